@@ -1,5 +1,7 @@
 //! Reading the arguments of post-processor words: keywords may stand in any order.
 
+use std::{iter::Peekable, slice};
+
 use apt_cldata::{geometry::chamfer_depth, record::ClWord};
 use smol_str::SmolStr;
 
@@ -137,20 +139,9 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
     let Some((ClWord::Word(kind), rest)) = arguments.items.split_first() else {
         return Err(arguments.missing("the kind of cycle"));
     };
-    let mut order = CycleOrder {
-        kind: kind.clone(),
-        depth: None,
-        clearance: None,
-        retract: Retract::Initial,
-        feed: None,
-        step: None,
-        dwell: None,
-        shift: None,
-        orientation: None,
-        times: None,
-    };
+    let mut order = CycleOrder::new(kind);
     let mut bare: Vec<f64> = Vec::new();
-    let mut items = rest.iter().peekable();
+    let mut items: CycleItems<'_> = rest.iter().peekable();
     while let Some(item) = items.next() {
         let word = match item {
             ClWord::Number(number) => {
@@ -159,78 +150,28 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
             }
             ClWord::Word(word) => word,
         };
-        let next = match items.peek() {
-            Some(ClWord::Number(number)) => Some(*number),
-            _ => None,
-        };
         if let Some((mode, unit)) = feed_unit(word) {
             // `depth, feed, UNIT` or `UNIT, feed`.
-            let value = match (bare.len(), next) {
-                (2.., _) => bare.remove(1),
-                (_, Some(number)) => {
-                    items.next();
-                    number
-                }
-                (_, None) => return Err(arguments.missing(word)),
+            let value = match bare.len() {
+                2.. => bare.remove(1),
+                _ => next_number(&mut items).ok_or_else(|| arguments.missing(word))?,
             };
             order.feed = Some(CycleFeed::Rate(value, mode, unit));
             continue;
         }
         match word.as_str() {
             "RTRCTO" | "RETURN" | "RETRCT" => {
-                if let Some(number) = next {
-                    items.next();
+                if let Some(number) = next_number(&mut items) {
                     order.retract = Retract::Above(number);
                 }
-                continue;
             }
-            "AUTO" | "ON" | "" => continue,
+            "AUTO" | "ON" | "" => {}
             "REV" => {
                 if let Some((_, revolutions)) = &mut order.dwell {
                     *revolutions = true;
                 }
-                continue;
             }
-            "DEPTH" | "FEDTO" | "RAPTO" | "CLEAR" | "STEP" | "INCR" | "DWELL" | "TPI" | "OFFSET"
-            | "ORIENT" | "TIMES" | "REPEAT" => {}
-            _ => {
-                return Err(PostFindingKind::UnknownArgument {
-                    word: arguments.word.clone(),
-                    argument: word.clone(),
-                });
-            }
-        }
-        let Some(number) = next else { return Err(arguments.missing(word)) };
-        items.next();
-        match word.as_str() {
-            "DEPTH" => order.depth = Some(number),
-            // NX gives a signed offset, the others a depth.
-            "FEDTO" => {
-                order.depth = Some(number.abs());
-                if let Some(ClWord::Number(angle)) = items.peek() {
-                    items.next();
-                    let bad = || PostFindingKind::BadValue {
-                        word: arguments.word.clone(),
-                        argument: "angle".into(),
-                        value: *angle,
-                    };
-                    order.depth = Some(chamfer_depth(number.abs(), *angle).ok_or_else(bad)?);
-                }
-            }
-            "RAPTO" | "CLEAR" => order.clearance = Some(number),
-            "STEP" | "INCR" => order.step = Some(number),
-            "DWELL" => order.dwell = Some((number, false)),
-            "OFFSET" => {
-                let second = items.next_if(|item| matches!(item, ClWord::Number(_)));
-                let second = second.and_then(|item| match item {
-                    ClWord::Number(number) => Some(*number),
-                    ClWord::Word(_) => None,
-                });
-                order.shift = Some((number, second));
-            }
-            "ORIENT" => order.orientation = Some(number),
-            "TIMES" | "REPEAT" => order.times = Some(number),
-            _ => order.feed = Some(CycleFeed::ThreadsPerInch(number)),
+            _ => order.couple(arguments, word, &mut items)?,
         }
     }
     let mut bare = bare.into_iter();
@@ -241,6 +182,75 @@ pub(crate) fn cycle_order(arguments: &Arguments<'_>) -> Result<CycleOrder, PostF
         order.clearance = bare.next();
     }
     Ok(order)
+}
+
+/// What is still to be read of a CYCLE.
+type CycleItems<'a> = Peekable<slice::Iter<'a, ClWord>>;
+
+/// The number that comes next, if one does.
+fn next_number(items: &mut CycleItems<'_>) -> Option<f64> {
+    let item = items.next_if(|item| matches!(item, ClWord::Number(_)))?;
+    match item {
+        ClWord::Number(number) => Some(*number),
+        ClWord::Word(_) => None,
+    }
+}
+
+impl CycleOrder {
+    /// A cycle of which nothing but the kind is known.
+    fn new(kind: &SmolStr) -> Self {
+        Self {
+            kind: kind.clone(),
+            depth: None,
+            clearance: None,
+            retract: Retract::Initial,
+            feed: None,
+            step: None,
+            dwell: None,
+            shift: None,
+            orientation: None,
+            times: None,
+        }
+    }
+
+    /// Takes a word with the numbers that belong to it.
+    fn couple(
+        &mut self,
+        arguments: &Arguments<'_>,
+        word: &SmolStr,
+        items: &mut CycleItems<'_>,
+    ) -> Result<(), PostFindingKind> {
+        let number = |items: &mut CycleItems<'_>| next_number(items).ok_or_else(|| arguments.missing(word));
+        match word.as_str() {
+            "DEPTH" => self.depth = Some(number(items)?),
+            // NX gives a signed offset, the others a depth.
+            "FEDTO" => {
+                let depth = number(items)?.abs();
+                self.depth = Some(match next_number(items) {
+                    None => depth,
+                    Some(angle) => chamfer_depth(depth, angle).ok_or_else(|| PostFindingKind::BadValue {
+                        word: arguments.word.clone(),
+                        argument: "angle".into(),
+                        value: angle,
+                    })?,
+                });
+            }
+            "RAPTO" | "CLEAR" => self.clearance = Some(number(items)?),
+            "STEP" | "INCR" => self.step = Some(number(items)?),
+            "DWELL" => self.dwell = Some((number(items)?, false)),
+            "TPI" => self.feed = Some(CycleFeed::ThreadsPerInch(number(items)?)),
+            "OFFSET" => self.shift = Some((number(items)?, next_number(items))),
+            "ORIENT" => self.orientation = Some(number(items)?),
+            "TIMES" | "REPEAT" => self.times = Some(number(items)?),
+            _ => {
+                return Err(PostFindingKind::UnknownArgument {
+                    word: arguments.word.clone(),
+                    argument: word.clone(),
+                });
+            }
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

@@ -162,38 +162,7 @@ impl Engine<'_> {
             return None;
         };
         let scale = self.scale;
-        let Some(depth) = order.depth.map(|depth| depth * scale) else {
-            self.find(arguments.missing("DEPTH"));
-            return None;
-        };
-        let before = self.suspended_cycle.as_ref().map(|cycle| cycle.clearance);
-        let Some(clearance) = order.clearance.map(|clearance| clearance * scale).or(before) else {
-            self.find(arguments.missing("RAPTO"));
-            return None;
-        };
-        if depth <= 0.0 || depth.is_nan() {
-            return self.bad_value(arguments, "DEPTH", depth);
-        }
-        if clearance < 0.0 || clearance.is_nan() {
-            return self.bad_value(arguments, "RAPTO", clearance);
-        }
-        if let Some(step) = order.step.filter(|step| *step <= 0.0 || step.is_nan()) {
-            return self.bad_value(arguments, "STEP", step);
-        }
-        let step = order.step.map(|step| step * scale);
-        let pecks = matches!(name.as_str(), "peck" | "chipbreak");
-        let step = match step {
-            Some(step) if step < depth => Some(step),
-            Some(step) => {
-                self.find(PostFindingKind::StepNotLessThanDepth { step, depth });
-                Some(depth)
-            }
-            None if pecks => {
-                self.find(arguments.missing("STEP"));
-                return None;
-            }
-            None => None,
-        };
+        let (depth, clearance, step) = self.cycle_lengths(arguments, &order, &name)?;
         let (feed, pitch) = self.cycle_feed(arguments, order.feed, is_tap(&name))?;
         let dwell = self.cycle_dwell(arguments, &order)?;
         let shift = self.cycle_shift(arguments, &order, &name)?;
@@ -223,6 +192,48 @@ impl Engine<'_> {
             holes: 0,
             place,
         })
+    }
+
+    /// Depth, clearance and step of a cycle on the tape; none where it is told what is wrong with them.
+    fn cycle_lengths(
+        &mut self,
+        arguments: &Arguments<'_>,
+        order: &CycleOrder,
+        name: &str,
+    ) -> Option<(f64, f64, Option<f64>)> {
+        let scale = self.scale;
+        let Some(depth) = order.depth.map(|depth| depth * scale) else {
+            self.find(arguments.missing("DEPTH"));
+            return None;
+        };
+        let before = self.suspended_cycle.as_ref().map(|cycle| cycle.clearance);
+        let Some(clearance) = order.clearance.map(|clearance| clearance * scale).or(before) else {
+            self.find(arguments.missing("RAPTO"));
+            return None;
+        };
+        if depth <= 0.0 || depth.is_nan() {
+            return self.bad_value(arguments, "DEPTH", depth);
+        }
+        if clearance < 0.0 || clearance.is_nan() {
+            return self.bad_value(arguments, "RAPTO", clearance);
+        }
+        if let Some(step) = order.step.filter(|step| *step <= 0.0 || step.is_nan()) {
+            return self.bad_value(arguments, "STEP", step);
+        }
+        let pecks = matches!(name, "peck" | "chipbreak");
+        let step = match order.step.map(|step| step * scale) {
+            Some(step) if step < depth => Some(step),
+            Some(step) => {
+                self.find(PostFindingKind::StepNotLessThanDepth { step, depth });
+                Some(depth)
+            }
+            None if pecks => {
+                self.find(arguments.missing("STEP"));
+                return None;
+            }
+            None => None,
+        };
+        Some((depth, clearance, step))
     }
 
     fn bad_value<T>(&mut self, arguments: &Arguments<'_>, argument: &str, value: f64) -> Option<T> {

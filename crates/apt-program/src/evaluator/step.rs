@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use apt_syntax::{
     ParsedStatement, SyntaxTree, TextRange,
-    statement::{Body, Name},
+    statement::{Body, MacroParameter, Name},
 };
 use smol_str::{SmolStr, format_smolstr};
 
@@ -109,34 +109,12 @@ impl Evaluator<'_> {
         if let Some(part) = statement.statement.parts.first() {
             match &part.body {
                 Body::Macro { name, parameters, .. } => {
-                    self.open_statement(&statement);
-                    let (body, next) = self.gather(top, index, "TERMAC", Some(name), part.range);
-                    // A header with a mistake does not tell the variables: nothing can be said of the text.
-                    if statement.is_broken() {
-                        return past(next);
-                    }
-                    self.report_missing_labels(&body, &|text| {
-                        parameters.iter().any(|parameter| parameter.name.text == text)
-                    });
-                    self.trace_macro(&name.text, &statement, &body);
-                    self.define_macro(name, parameters, body);
-                    return past(next);
+                    return past(self.top_level_macro(top, index, &statement, (name, parameters)));
                 }
                 Body::Major { word, .. }
                     if word.word.spelling == "LOOPST" && !self.dialect.branch_anywhere =>
                 {
-                    self.open_statement(&statement);
-                    let (mut block, next) = self.gather(top, index, "LOOPND", None, part.range);
-                    if let Some(label) = &statement.statement.label {
-                        block.name_beginning(&label.text);
-                    }
-                    self.report_missing_labels(&block, &|_| false);
-                    self.trace_loop(&statement, &block);
-                    self.cards.next = next;
-                    let frame = self.frame(FrameKind::Loop, SmolStr::default(), part.range);
-                    let bindings = Bindings::default();
-                    self.run_block(&Activation { block: &block, bindings, region: Region::Loop, frame });
-                    return past(next);
+                    return past(self.top_level_loop(top, index, &statement, part.range));
                 }
                 Body::Do { label, index: variable, bounds, .. } => {
                     self.open_statement(&statement);
@@ -172,6 +150,51 @@ impl Evaluator<'_> {
                 StepEnd { next: count, read_to, read_from: index }
             }
         }
+    }
+
+    /// A macro with its text. The index to go on with.
+    fn top_level_macro(
+        &mut self,
+        top: &TopLevel<'_>,
+        index: usize,
+        header: &ParsedStatement,
+        (name, parameters): (&Name, &[MacroParameter]),
+    ) -> usize {
+        self.open_statement(header);
+        let range = header.statement.parts.first().map_or(name.range, |part| part.range);
+        let (body, next) = self.gather(top, index, "TERMAC", Some(name), range);
+        // A header with a mistake does not tell the variables: nothing can be said of the text.
+        if header.is_broken() {
+            return next;
+        }
+        self.report_missing_labels(&body, &|text| {
+            parameters.iter().any(|parameter| parameter.name.text == text)
+        });
+        self.trace_macro(&name.text, header, &body);
+        self.define_macro(name, parameters, body);
+        next
+    }
+
+    /// LOOPST with its loop, which is executed. The index to go on with.
+    fn top_level_loop(
+        &mut self,
+        top: &TopLevel<'_>,
+        index: usize,
+        header: &ParsedStatement,
+        range: TextRange,
+    ) -> usize {
+        self.open_statement(header);
+        let (mut block, next) = self.gather(top, index, "LOOPND", None, range);
+        if let Some(label) = &header.statement.label {
+            block.name_beginning(&label.text);
+        }
+        self.report_missing_labels(&block, &|_| false);
+        self.trace_loop(header, &block);
+        self.cards.next = next;
+        let frame = self.frame(FrameKind::Loop, SmolStr::default(), range);
+        let bindings = Bindings::default();
+        self.run_block(&Activation { block: &block, bindings, region: Region::Loop, frame });
+        next
     }
 
     /// Labels that no statement of a loop or macro carries: a warning, which becomes an error when a jump leads there.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use apt_geometry::{
     canonical::GeometryKind,
-    motion::{CheckSurface, DriveSide, MotionCommand, PartSide, PerRole, Relation, Turn},
+    motion::{CheckSurface, DriveSide, MotionCommand, PartSide, PerRole, Relation, StartSurface, Turn},
     patience::Patience,
     regional::RegionalCommand,
 };
@@ -276,16 +276,7 @@ impl Walk {
             MotionCommand::ToolAxis(_) => self.sets(Mode::ToolAxis, origin),
             MotionCommand::PartSurface(surface) => self.part = Some(surface.geometry.kind()),
             MotionCommand::AutomaticPartSurface => self.part = Some(GeometryKind::Plane),
-            MotionCommand::Output(on) => {
-                if *on && self.no_output {
-                    // The place where the tool is now is put out, which is an effect of both statements.
-                    self.effective.extend(self.waiting.remove(&Mode::Output).iter().map(place));
-                    self.effective.insert(place(origin));
-                } else {
-                    self.sets(Mode::Output, origin);
-                }
-                self.no_output = !on;
-            }
+            MotionCommand::Output(on) => self.output(origin, *on),
             MotionCommand::Thickness(values) => {
                 let hides = self.thickness.as_ref().is_some_and(|before| !is_zero(&before.values));
                 self.close_thickness();
@@ -299,18 +290,7 @@ impl Walk {
             }
             MotionCommand::SurfaceVectors(_) => self.surface_vectors = true,
             MotionCommand::Start(surfaces) | MotionCommand::Offset(surfaces) => {
-                self.moved();
-                if let Some(part) = surfaces.get(1) {
-                    self.part = Some(part.surface.geometry.kind());
-                }
-                if let Some(thickness) = &mut self.thickness {
-                    let values = [thickness.values.drive, thickness.values.part, thickness.values.check[0]];
-                    thickness.motions += 1;
-                    thickness.felt |= surfaces
-                        .iter()
-                        .zip(values)
-                        .any(|(surface, value)| value != 0.0 && surface.relation != Relation::On);
-                }
+                self.started(surfaces);
             }
             MotionCommand::Drive { turn, drive, checks } => {
                 self.side(origin, *turn, &drive.name);
@@ -330,6 +310,34 @@ impl Walk {
                 self.moved();
             }
             _ => {}
+        }
+    }
+
+    /// CUT or DNTCUT.
+    fn output(&mut self, origin: &Origin, on: bool) {
+        if on && self.no_output {
+            // The place where the tool is now is put out, which is an effect of both statements.
+            self.effective.extend(self.waiting.remove(&Mode::Output).iter().map(place));
+            self.effective.insert(place(origin));
+        } else {
+            self.sets(Mode::Output, origin);
+        }
+        self.no_output = !on;
+    }
+
+    /// A start-up to these surfaces.
+    fn started(&mut self, surfaces: &[StartSurface]) {
+        self.moved();
+        if let Some(part) = surfaces.get(1) {
+            self.part = Some(part.surface.geometry.kind());
+        }
+        if let Some(thickness) = &mut self.thickness {
+            let values = [thickness.values.drive, thickness.values.part, thickness.values.check[0]];
+            thickness.motions += 1;
+            thickness.felt |= surfaces
+                .iter()
+                .zip(values)
+                .any(|(surface, value)| value != 0.0 && surface.relation != Relation::On);
         }
     }
 

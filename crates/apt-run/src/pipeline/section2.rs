@@ -150,20 +150,8 @@ impl<'a> Section2<'a> {
         match &record.kind {
             RecordKind::Motion(command) => return self.command(command, &record.origin, source),
             RecordKind::Regional(command) => return self.mill(command, &record.origin, source),
-            RecordKind::Postprocessor { word, arguments, .. } if units(word, arguments).is_some() => {
-                if let Some(units) = units(word, arguments) {
-                    self.push(record.origin.isn, source, ClKind::Units(units));
-                }
-            }
-            RecordKind::Postprocessor { word, arguments, .. } if word == "FEDRAT" && self.may_approach => {
-                if let Some(arguments) = self.feeds.state(cl_words(arguments)) {
-                    self.feed(record.origin.isn, source, arguments);
-                }
-            }
             RecordKind::Postprocessor { word, code, arguments } => {
-                let arguments = cl_words(arguments);
-                let kind = ClKind::Postprocessor { word: word.clone(), code: Some(*code), arguments };
-                self.push(record.origin.isn, source, kind);
+                self.postprocessor(record.origin.isn, source, (word, *code), arguments);
             }
             RecordKind::Text { word, code, text } => {
                 let kind = ClKind::Text { word: word.clone(), code: Some(*code), text: text.clone() };
@@ -214,6 +202,27 @@ impl<'a> Section2<'a> {
             }
         }
         Ok(())
+    }
+
+    /// A word of the post-processor: UNITS is a record of its own, FEDRAT may ask for an approach.
+    fn postprocessor(
+        &mut self,
+        isn: u32,
+        source: u32,
+        (word, code): (&SmolStr, u16),
+        arguments: &[PostArgument],
+    ) {
+        if let Some(units) = units(word, arguments) {
+            self.push(isn, source, ClKind::Units(units));
+        } else if word == "FEDRAT" && self.may_approach {
+            if let Some(arguments) = self.feeds.state(cl_words(arguments)) {
+                self.feed(isn, source, arguments);
+            }
+        } else {
+            let arguments = cl_words(arguments);
+            let kind = ClKind::Postprocessor { word: word.clone(), code: Some(code), arguments };
+            self.push(isn, source, kind);
+        }
     }
 
     /// Closes the run.
