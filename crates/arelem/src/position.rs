@@ -162,7 +162,19 @@ pub(crate) fn solve_proven_within(
     solve_unless(attitude, conditions, start, effort, &|_| false)
 }
 
-/// The same for one of many tries: where the last contacts lead nowhere, and the nearest ones are the same there, these are not followed on
+/// The same unless the way leads farther from the start than this.
+pub(crate) fn solve_proven_near(
+    attitude: &Attitude,
+    conditions: &[Condition<'_>],
+    start: &Vec3,
+    corrections: u32,
+    farthest: f64,
+) -> Result<Solution, Unsolved> {
+    let effort = Effort { corrections, halvings: MAX_HALVINGS, turns: 0, is_one_of_many: false };
+    solve_unless(attitude, conditions, start, effort, &|tip| (tip - start).norm() > farthest)
+}
+
+/// As [`solve_within`] for one of many tries: where the last contacts lead nowhere, and the nearest ones are the same there, these are not followed on
 /// the way.
 pub(crate) fn try_within(
     attitude: &Attitude,

@@ -8,7 +8,7 @@ use apt_geometry::{
 };
 
 use super::*;
-use crate::{attitude::NORMALS, error::AxisFailure, verify::Rule};
+use crate::{attitude::NORMALS, clearance::EVALUATIONS, error::AxisFailure, verify::Rule};
 
 /// Slope of the legs of both corners, in which a path turns by 127°.
 const STEEP: f64 = 2.0;
@@ -389,4 +389,54 @@ fn a_tool_that_turns_does_not_go_back_before_it_sets_out() {
     program.side(DriveSide::On).indirv(forward.x, forward.y, forward.z);
     let failure = program.attempt(&motion(Turn::Forward, &drive, &[(Relation::Past, 1, &stop)]));
     assert!(matches!(failure, Err(MotionFailure::NoAdmissibleVector { .. })), "{failure:?}");
+}
+
+/// A ball that stands on a ruled surface and goes along a plane to where the surface ends, beyond which its axis is not determined.
+fn to_where_the_axis_ends() -> (Program, MotionCommand) {
+    let axis = v(0.04171936257435866, -0.9770723689353888, -0.20877998143829954);
+    let circle = |point: Vec3, radius: f64| Geometry::Circle(Cylinder { point, axis, radius });
+    let upward = Geometry::Vector(v(0.00548946338230551, -0.2087346000748351, 0.9779569175190558));
+    let point = |x, y, z| Geometry::Point(v(x, y, z));
+    let parts = vec![
+        circle(v(-2.1076819847381736, 5.901501986919063, -20.322628724632793), 21.642321872459874),
+        point(1.8803750231496013, 4.560829362846245, 1.1177092915472269),
+        point(-6.112539281220391, 4.225262728549096, 1.090951919777607),
+        upward.clone(),
+        circle(v(-2.2645174864687627, 11.86510779888122, -48.26313094647003), 49.99999999999999),
+        point(2.1306911985957533, -1.301604850766088, -0.13497059708257003),
+        point(-5.862223105774239, -1.637171485063237, -0.16172796885218993),
+        upward,
+    ];
+    let part = Geometry::RuledSurface(Remembering::new(RuledSurface { parts }));
+    let drive = plane(0.6916356938893817, -0.6653545424661483, -0.2809686810977619, -3.294905573691028);
+    let first = plane(-0.7177314459422703, -0.6766026442483131, -0.16453094937369256, 0.08442735827099151);
+    let axis = v(-0.9022344294936404, 0.3480446790501688, -0.2546329429220621);
+    let stop =
+        cylinder(v(-2.6249706537942354, -3.40758155461904, 3.9098534283035007), axis, 4.471901089701513);
+    let mut program = Program::new();
+    program.cutter(&[0.9573456923828947, 0.47867284619144734]).tolerance(0.0, 0.001);
+    program.run(&MotionCommand::MaximumStep(10.0));
+    let position = v(-1.5303513365738508, 0.6572782522829063, 1.3718859814188582);
+    let axis = Some(v(0.006919387102020796, -0.2432049274500964, 0.9699502489025537));
+    program.run(&MotionCommand::From { position, axis, name: String::new() });
+    program.part_side(PartSide::Offset).run(&MotionCommand::ToolAxis(ToolAxis::Normal { part: true }));
+    program.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::To, &first)]);
+    program.side(DriveSide::Right).indirv(0.7177314459422705, 0.676602644248313, 0.16453094937369264);
+    (program, motion(Turn::Forward, &drive, &[(Relation::To, 1, &stop)]))
+}
+
+/// Clearances that are computed until a motion is refused whose axis ends with the surface that tells it. Vectors of all lengths are tried there, over a
+/// thousand of which find a place at the far end of the surface alone: each is looked for again in some tens of clearances, not in more than a hundred.
+const UNTIL_THE_AXIS_ENDS: u64 = 80_000;
+
+#[test]
+fn a_motion_whose_axis_ends_with_its_surface_is_refused_soon() {
+    let (mut program, command) = to_where_the_axis_ends();
+    let before = EVALUATIONS.get();
+    let failure = program.attempt(&command);
+    let computed = EVALUATIONS.get() - before;
+    let Err(MotionFailure::AxisUndetermined { cause: AxisFailure::SurfaceEnds { .. }, .. }) = failure else {
+        panic!("{failure:?}");
+    };
+    assert!(computed <= UNTIL_THE_AXIS_ENDS, "{computed} clearances");
 }

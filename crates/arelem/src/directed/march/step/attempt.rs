@@ -24,6 +24,8 @@ const MOST_SHORTENINGS: u32 = 12;
 const FALLS_SHORT: f64 = 0.7;
 /// How many times as far away as it is looked for a position is to which the contacts that were found last have led astray.
 const ASTRAY: f64 = 2.0;
+/// How many times as far the nearest contacts may lead on the way before looking for it with them is in vain.
+const STRAYS: f64 = 2.0;
 /// Bound of the ends looked for along vectors that fell short.
 const MOST_SHORT: u32 = 2;
 /// Cosine between the directions at both ends below which the vector is shortened (60°).
@@ -113,7 +115,7 @@ impl Stepper<'_> {
     /// The position with these clearances that is found from a place.
     ///
     /// On the way the contacts that were found last are followed. Where these were at the end of a surface far ahead they lead there from anywhere: what
-    /// is found much farther away than it is looked for is looked for again with those that are the nearest.
+    /// is found much farther away than it is looked for is looked for again with those that are the nearest, no farther away.
     pub(super) fn meet(&self, here: &Vertex, start: &Vec3, targets: [f64; 2]) -> Option<Vertex> {
         let Prepared { attitude, part, drive, .. } = self.prepared;
         let conditions =
@@ -122,7 +124,8 @@ impl Stepper<'_> {
         let followed = position::try_within(attitude, &conditions, start, CORRECTIONS).ok()?;
         let is_far = self.roles().iter().any(|role| role.gauge.surface.has_ends())
             && (followed.tip - here.tip).norm() > ASTRAY * (start - here.tip).norm();
-        let again = || position::solve_proven_within(attitude, &conditions, start, CORRECTIONS).ok();
+        let farthest = STRAYS * ASTRAY * (start - here.tip).norm();
+        let again = || position::solve_proven_near(attitude, &conditions, start, CORRECTIONS, farthest).ok();
         let nearer = is_far.then(again).flatten().filter(|found| off(found) < off(&followed));
         let Solution { tip, contacts: [Some(part), Some(drive), _], .. } = &nearer.unwrap_or(followed) else {
             return None;
