@@ -436,3 +436,44 @@ fn vectors_end_off_a_limit_beside_which_nothing_is_proven() {
     let (count, least) = (last.points.len(), last.minimum.expect("a bound"));
     assert!(count as f64 <= 1.02 * f64::from(least) + 2.0, "{count} vectors, {least} at least");
 }
+
+/// Along a hollow cone over a plane that leans: what vectors fill is read, not proven, and a stretch that is read to be fuller than it may be by half a
+/// hundredth spares a vector.
+#[test]
+fn a_stretch_that_is_read_to_be_a_little_too_full_spares_a_vector() {
+    let part = Geometry::Cone(Cone {
+        vertex: v(2.609901676698079, 0.9853148997967107, 1.7062081542078942),
+        axis: v(-0.4452521496746489, -0.6203742642118016, -0.6456673257287918),
+        cosine: 0.9041412156136202,
+    });
+    let drive = plane(-0.7735299934612927, -0.622012336691712, -0.12145782074073638, 0.23506593545094256);
+    let first = plane(-0.5390616633444525, 0.7465287114750269, -0.39000949482768793, -2.896138514311675);
+    let stop = Geometry::Ellipse(Quadric {
+        coefficients: [
+            0.5007248272454315,
+            1.0076412888763404,
+            0.0,
+            2.7968504289633347,
+            0.0,
+            0.0,
+            -0.6633533368752328,
+            -1.3177159303034272,
+            1.951615861207097,
+            0.0,
+        ],
+    });
+    let mut p = Program::new();
+    let drill =
+        [0.7780260873583855, 0.0, 0.38901304367919276, 0.23374261823487516, 31.0, 0.0, 4.166571363556976];
+    p.tolerance(0.001, 0.001).cutter(&drill);
+    p.run(&MotionCommand::From {
+        position: v(-1.0119376237271693, -1.2119815934539033, 0.9682119450911508),
+        axis: Some(v(-0.1560534561416547, 0.0011934212257711256, 0.987747890188596)),
+        name: String::new(),
+    });
+    p.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::To, &first)]).side(DriveSide::Left);
+    p.indirv(-0.5390616633444525, 0.7465287114750268, -0.3900094948276877);
+    p.run(&motion(Turn::Forward, &drive, &[(Relation::Past, 2, &stop)]));
+    let vectors = p.last().points.len();
+    assert!(vectors <= 30, "{vectors} vectors");
+}

@@ -41,6 +41,9 @@ const MOST_ROUNDS: u32 = 16;
 const LEAST_ONWARD: f64 = 0.5;
 /// Share of MAXDP that a vector's length may be above it by rounding.
 const ROUNDING: f64 = 1e-9;
+/// Share by which what vectors fill may be read too great. A full one is read to fill a hundredth less than one, as bands are taken to be a fiftieth wider
+/// for the least number of vectors.
+const MISREAD: f64 = 0.01;
 
 #[cfg(test)]
 thread_local! {
@@ -267,7 +270,7 @@ impl March<'_> {
     }
 
     /// Whether what is left of a stretch behind the farthest place to which some vectors lead may be gone along in one vector fewer than it was, with those:
-    /// no vector is more than full.
+    /// no vector is more than full, as far as is read.
     fn has_room(&self, stretch: &Stretch, farthest: Option<&Reached>, vectors: usize) -> bool {
         let Some(farthest) = farthest else { return false };
         let Stretch { were, fills, .. } = stretch;
@@ -280,7 +283,7 @@ impl March<'_> {
         let Some(alone) = alone.and_then(|fills| fills.first().copied()) else { return false };
         let mut filled = alone.min(share * fills[next - 1]);
         (next..were.len()).any(|count| {
-            let has_room = count > vectors && filled <= (count - 1 - vectors) as f64;
+            let has_room = count > vectors && filled * (1.0 - MISREAD) <= (count - 1 - vectors) as f64;
             filled += fills.get(count).copied().unwrap_or_default();
             has_room
         })
