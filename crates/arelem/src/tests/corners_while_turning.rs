@@ -440,3 +440,44 @@ fn a_motion_whose_axis_ends_with_its_surface_is_refused_soon() {
     };
     assert!(computed <= UNTIL_THE_AXIS_ENDS, "{computed} clearances");
 }
+
+/// A drill whose axis lies along a ruled surface comes into a neck of that, over a cylinder. At the last place on the first wall both walls are equally near: the
+/// one that is read there is the second wall, which is no reason to take the gradient of that for what the law of the axis makes of the first one.
+#[test]
+fn a_tool_along_both_walls_of_a_neck_goes_back_along_the_other_one() {
+    let part = cylinder(
+        v(-1.531788579375378, -0.6329986257844216, -1.6872435554358627),
+        v(-0.9958054004224391, -0.05017928807721081, 0.07650910754655225),
+        2.1880998726623577,
+    );
+    let circle = Geometry::Circle(Cylinder {
+        point: v(-7.664941349578762, -2.0410522293493774, 1.1634558856667963),
+        axis: v(0.2556453100626782, -0.48058824811180395, 0.8388566094510935),
+        radius: 7.020967751152781,
+    });
+    let point = |x, y, z| Geometry::Point(v(x, y, z));
+    let parts = vec![
+        circle,
+        point(-2.6726760017977735, 3.381825183951302, -0.8274422584846908),
+        point(-3.047470561494381, -3.6008016274697083, -4.713629573893751),
+        Geometry::Vector(v(0.9656348257297104, 0.08488583345269805, -0.2456497071380152)),
+        point(0.4034280283362528, -4.136726829266003, 4.656547066069777),
+    ];
+    let drive = Geometry::RuledSurface(Remembering::new(RuledSurface { parts }));
+    let cutter =
+        [0.4368422156446608, 0.0, 0.2184211078223304, 0.13124064205481095, 31.0, 0.0, 4.670490640758515];
+    let mut p = Program::new();
+    p.cutter(&cutter).tolerance(2e-5, 3e-5);
+    p.run(&MotionCommand::Thickness(PerRole::all(0.18843201169594356)));
+    let axis = Some(v(0.227, -0.473, 0.851));
+    let position = v(-1.4, -1.785, 0.42);
+    p.run(&MotionCommand::From { position, axis, name: String::new() }).part_side(PartSide::Offset);
+    let height = 0.3788663583511529;
+    p.run(&MotionCommand::ToolAxis(ToolAxis::Tangent { height, mode: AxisTangency::Across }));
+    let first = plane(0.986, 0.166, -0.012, -1.6);
+    p.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::On, &first)]);
+    p.side(DriveSide::Right).indirv(0.986, 0.166, -0.012);
+    p.drive(Turn::Forward, &drive, Relation::On, &plane(0.0, 0.0, 1.0, 0.391));
+    assert!((p.tip() - v(-1.295, -1.761, 0.391)).norm() < 0.001, "{:?}", p.tip());
+    is_proven(&p);
+}

@@ -38,6 +38,11 @@ const GREATEST_DIVISION: u32 = 8;
 const PIECES: usize = 4096;
 /// Parameter next to the end of a piece that counts as the joint with its neighbour.
 const JOINT: f64 = 1e-7;
+/// Share of what a tangent is in the middle of a patch below which it has no direction but rounding.
+const NO_LENGTH: f64 = 1e-9;
+/// How far inside of a place where one has none the normal is taken, as a share of the way to the middle: that of an apex is the same all along a
+/// ruling, and beside a corner in which the curves meet it is off by a turn as small as this.
+const INSIDE: f64 = 1e-6;
 /// Sine of the angle between the normals of neighbours above which the joint is an edge of the surface.
 const EDGE: f64 = 1e-5;
 /// What the second derivative of a cubic's error is at most, times that error, where it is the error of a cubic through
@@ -218,8 +223,17 @@ impl RuledStrips {
         Some(Self { sheet, size: model.size, error: model.error, greatest_error: model.greatest_error })
     }
 
+    /// The normal at a place of a patch: where a curve or a ruling has no length, as in an apex, that beside it.
     fn normal_at(&self, piece: usize, along: f64, across: f64) -> Option<Vec3> {
-        let [_, run, rise] = jet(&self.sheet.patches.get(piece)?.net, [along, across]);
+        let net = &self.sheet.patches.get(piece)?.net;
+        let tangents = |place: [f64; 2]| {
+            let [_, run, rise] = jet(net, place);
+            [run, rise]
+        };
+        let (here, middle) = (tangents([along, across]), tangents([0.5, 0.5]));
+        let has_length = (0..2).all(|k| here[k].norm() > NO_LENGTH * middle[k].norm());
+        let inside = |at: f64| at + INSIDE * (0.5 - at);
+        let [run, rise] = if has_length { here } else { tangents([inside(along), inside(across)]) };
         run.cross(&rise).try_normalize(0.0)
     }
 

@@ -362,3 +362,17 @@ fn a_surface_that_is_smooth_between_the_ends_of_its_curves_has_no_edges_there() 
         assert!(edges.len() >= 4 && edges.iter().all(|is_edge| !is_edge), "{accuracy}: {edges:?}");
     }
 }
+
+/// Beyond the point in which all rulings meet that is the nearest place, which has the normals of all of them.
+#[test]
+fn what_is_beyond_an_apex_is_as_far_away_as_that() {
+    let surface = Surface::of(&half_cone()).unwrap();
+    let apex = Vec3::new(0.0, 0.0, 3.0);
+    for away in [[0.0, 0.0, 1.0], [0.3, 0.2, 0.9], [-0.1, 0.05, 4.0], [0.0, 5e-4, 1e-3], [0.0, 0.0, 0.0]] {
+        let away = Vec3::from(away);
+        let (distance, normal) = surface.point_distance(&(apex + away)).expect("a distance");
+        assert!((distance.abs() - away.norm()).abs() < 1e-9, "{away:?}: {distance}");
+        let is_along = normal.dot(&away) * distance.signum() > (1.0 - 1e-6) * away.norm();
+        assert!(away.norm() == 0.0 || is_along, "{away:?}: {normal:?}");
+    }
+}

@@ -57,16 +57,20 @@ fn touches_as_before(prepared: &Prepared<'_>, [from, to]: [&Vertex; 2], role: us
 /// Whether it is the law of the axis that turns the gradient of a clearance from one vertex to another, and no other place of contact: the contact at the first
 /// one has about that gradient if the axis turns as it does at the second one.
 fn is_turned_by_law(prepared: &Prepared<'_>, [from, to]: [&Vertex; 2], role: usize) -> bool {
-    let attitude = &prepared.attitude;
-    let Some(posture) = attitude.turns().then(|| attitude.posture(&to.tip).ok()).flatten() else {
+    if !prepared.attitude.turns() {
         return false;
-    };
+    }
     let gauge = [&prepared.part.gauge, &prepared.drive.gauge][role];
-    let mut carried = gauge.contact(&prepared.tool.turned(from.axis), &from.tip);
-    carried.tool += to.tip - from.tip;
-    posture.follow_law(gauge, &to.tip, &mut carried);
-    let carried = carried.gradient.try_normalize(0.0);
-    carried.is_some_and(|carried| carried.dot(&gradients(to)[role]) >= SAME_CONTACT_COSINE)
+    let read = gauge.contact(&prepared.tool.turned(from.axis), &from.tip);
+    let moved = Contact { tool: read.tool + (to.tip - from.tip), ..read };
+    let has_gradient_of = |vertex: &Vertex, mut contact: Contact| {
+        let Ok(posture) = prepared.attitude.posture(&vertex.tip) else { return false };
+        posture.follow_law(gauge, &vertex.tip, &mut contact);
+        let gradient = contact.gradient.try_normalize(0.0);
+        gradient.is_some_and(|gradient| gradient.dot(&gradients(vertex)[role]) >= SAME_CONTACT_COSINE)
+    };
+    // Of two places that are equally near the one that is read need not be the one that the path has followed.
+    has_gradient_of(from, read) && has_gradient_of(to, moved)
 }
 
 /// Whether the hand stays between two vertices though the tangent at the second one tells the other: the vector leads along on it at both ends, or the
