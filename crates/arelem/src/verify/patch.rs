@@ -6,7 +6,7 @@ use super::strip::{Cubic, lerp};
 
 /// Share of a patch by which its cubics are followed beyond each of its sides.
 const BEYOND: f64 = 0.25;
-/// Least share of the way between two places of a patch, measured along its parameters, that is progress in space.
+/// Least share of the way between two places of a patch, as its mean tangents lead, that is progress in space.
 const PROGRESS: f64 = 0.3;
 
 /// Control points: cubics along the patch, in the order across it.
@@ -287,7 +287,8 @@ impl Bends {
     /// None where the patch turns too much for a bound, or its parameters do not spread.
     ///
     /// From one place to another, a and b away in the parameters, a patch goes by `aU + bV` with U and V among the convex
-    /// hulls of the differences of its control points, and leaves the tangent plane by half of `a²·n·Uu + 2ab·n·Uv + b²·n·Vv`.
+    /// hulls of the differences of its control points, and leaves the tangent plane by half of `a²·n·Uu + 2ab·n·Uv + b²·n·Vv`. The way as the means of
+    /// both lead is the measure: however skew they are, no more of it is lost than U and V are off them.
     pub(super) fn of(net: &Net) -> Option<Self> {
         let wide = stretched_net(net);
         let (along, across) = (differences(&wide), differences(&turned(&wide)));
@@ -305,7 +306,8 @@ impl Bends {
         let normal = u.cross(&v);
         let area = normal.norm();
         let cosine = u.dot(&v).abs() / (size_u * size_v);
-        let progress = (1.0 - cosine).max(0.0).sqrt() - (off_u / size_u).hypot(off_v / size_v);
+        let off = (off_u / size_u).hypot(off_v / size_v);
+        let progress = 1.0 - off / (1.0 - cosine).max(0.0).sqrt();
         if !(area > 0.0 && progress > PROGRESS) {
             return None;
         }
@@ -332,11 +334,22 @@ impl Bends {
         let twist = uv[0].max(uv[1]).max(0.0) / (size_u * size_v);
         let hollow = [0, 1].map(|side| {
             let (l, k) = (uu[side] / (size_u * size_u), vv[side] / (size_v * size_v));
-            let greatest = 0.5 * (l + k) + (0.5 * (l - k)).hypot(twist);
-            greatest.max(0.0) / (progress * progress)
+            greatest_bend([l, k], twist, cosine).max(0.0) / (progress * progress)
         });
         hollow.iter().all(|h| h.is_finite()).then_some(Self { hollow })
     }
+}
+
+/// The greatest value of the form `l·a² ± 2·twist·a·b + k·b²` for a unit vector of two that make an angle with that cosine, a along the one and b
+/// along the other.
+fn greatest_bend([l, k]: [f64; 2], twist: f64, cosine: f64) -> f64 {
+    let square_of_sine = 1.0 - cosine * cosine;
+    let greatest = |twist: f64| {
+        let across = 2.0 * twist - cosine * (l + k);
+        let spread = (square_of_sine.sqrt() * (l - k)).hypot(across);
+        0.5 * (l + k - 2.0 * twist * cosine + spread) / square_of_sine
+    };
+    greatest(twist).max(greatest(-twist))
 }
 
 /// The greatest heights of vectors over a plane and under it, and their greatest length squared.
@@ -386,10 +399,10 @@ mod tests {
         #[test]
         fn balls_that_touch_a_patch_hold_no_place_of_it(
             net in bumps(),
-            flat in 0.05..1.0f64,
+            flat in 0.05..1.0f64, skew in -3.0..3.0f64,
             [u, v, s, t] in [-0.25..1.25f64, -0.25..1.25f64, -0.25..1.25f64, -0.25..1.25f64],
         ) {
-            let net = net.map(|row| row.map(|p| Vec3::new(p.x, p.y, p.z * flat)));
+            let net = net.map(|row| row.map(|p| Vec3::new(p.x + skew * p.y, p.y, p.z * flat)));
             let Some(bends) = Bends::of(&net) else { return Ok(()) };
             let [touch, along, across] = jet(&net, [u, v]);
             let [other, ..] = jet(&net, [s, t]);
@@ -399,6 +412,19 @@ mod tests {
                 let room = 0.5 * hollow * (other - touch).norm_squared();
                 prop_assert!(rise <= room + 1e-12, "{rise} {room}");
             }
+        }
+
+        #[test]
+        fn a_bend_is_the_greatest_of_all_directions(
+            [l, k] in [-2.0..2.0f64, -2.0..2.0f64], twist in 0.0..2.0f64, cosine in 0.0..0.99f64,
+        ) {
+            let greatest = greatest_bend([l, k], twist, cosine);
+            let sampled = (0..2000).map(|n| {
+                let (b, a) = (f64::from(n) * std::f64::consts::PI / 2000.0).sin_cos();
+                (l * a * a + 2.0 * twist * (a * b).abs() + k * b * b) / (1.0 + 2.0 * cosine * a * b)
+            });
+            let sampled = sampled.fold(f64::NEG_INFINITY, f64::max);
+            prop_assert!(sampled <= greatest + 1e-9 && sampled >= greatest - 1e-3 * greatest.abs().max(1.0), "{sampled} {greatest}");
         }
 
         #[test]
@@ -431,6 +457,19 @@ mod tests {
             let [first, last] = halves_across(&net);
             let part = if v < 0.5 { jet(&first, [u, 2.0 * v])[0] } else { jet(&last, [u, 2.0 * v - 1.0])[0] };
             prop_assert!((whole - part).norm() < 1e-12);
+        }
+
+        /// A trough z = y²/10 along x, whichever way its rulings lean: its curvature is 1/5 at most, and two and a half times that is as close as control points tell.
+        #[test]
+        fn a_skew_patch_bends_as_much_as_one_that_is_not(skew in -3.0..3.0f64) {
+            let net: Net = std::array::from_fn(|j| {
+                let y = j as f64 / 3.0;
+                // Control points of the square.
+                let square = [0.0, 0.0, 1.0 / 3.0, 1.0][j];
+                std::array::from_fn(|i| Vec3::new(i as f64 / 3.0 + skew * y, y, 0.1 * square))
+            });
+            let bends = Bends::of(&net).expect("a bound");
+            prop_assert!(bends.hollow.iter().all(|hollow| *hollow < 0.5), "{bends:?}");
         }
 
         #[test]
