@@ -2,13 +2,14 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::{Cylinder, Geometry, Plane, Quadric},
+    canonical::{Cone, Cylinder, Geometry, Plane, Quadric},
     motion::{DriveSide, MotionCommand, Relation, Turn},
 };
 
 use super::{
     Program, circle, cylinder, ground, line, motion, named, plane, quadric,
     refused::{AMPLE, Found},
+    sheets::ruled,
     sphere, v, x, y,
 };
 use crate::{error::MotionFailure, sequence::Stop, verify::Rule, verify::verify};
@@ -288,4 +289,56 @@ fn a_path_that_comes_back_where_its_surfaces_all_but_touch_is_proven() {
     let deepest = path.points.iter().map(|point| point.tip.z).fold(f64::INFINITY, f64::min);
     let last = path.points.last().expect("a vertex").tip;
     assert!(last.z > deepest + 1.0, "{path:?}");
+}
+
+/// A bell in a hollow cone comes back from a corner before it comes to its tangency: into the corner one vector leads in the place of two.
+#[test]
+fn fewer_vectors_lead_to_a_tangency() {
+    let across = v(0.23294346823084977, -0.9538925610104234, -0.18927842628667074);
+    let point = v(-6.283196467135157, 0.11733443487412576, 2.9799359372897407);
+    let motion = Found {
+        cutter: &[0.6, 0.11, 0.2, 0.13, 9.163208393958554, 3.6602650274620134, 3.3510470592665538],
+        axis: v(0.09242606528100263, 0.03646138510438561, 0.9950517523490633),
+        from: v(-3.135546776278291, 2.826080450946606, -2.199922216787687),
+        band: [0.01, 0.005],
+        thickness: 0.0,
+        drive_side: DriveSide::Left,
+        forward: v(0.5222059872024714, -0.6762409022970021, 0.5196144233856764),
+        part: (
+            Relation::To,
+            Geometry::Cone(Cone {
+                vertex: v(-2.690607186807475, -2.6654259523242816, 1.309908766504694),
+                axis: v(0.24145619642109184, 0.9267720730783796, -0.2877367369173804),
+                cosine: 0.8997570446879427,
+            }),
+        ),
+        drive: (
+            Relation::To,
+            ruled([
+                (
+                    plane(0.959993603505892, 0.2566543973501626, -0.11198572028878095, -2.987322903913245),
+                    v(-3.1881380182028245, 3.2577699301464094, 6.812045102755973),
+                    v(-4.435807977486298, 4.50719215437975, -1.0200737597232425),
+                    v(0.9599936035058919, 0.25665439735016277, -0.11198572028878098),
+                ),
+                (
+                    Geometry::Circle(Cylinder { point, axis: across, radius: 5.2240139794442175 }),
+                    v(-1.4706036064767278, -2.374421098991371, 5.610606265251572),
+                    v(-3.358020770442197, -1.30732754860755, -2.0899760376588903),
+                    v(0.9434382452640139, 0.2688809624473629, -0.19397758995960918),
+                ),
+            ]),
+        ),
+        first: (Relation::On, x(0.0)),
+        stop: (
+            Relation::TangentToPart,
+            cylinder(
+                v(-0.5871207356008467, 5.538035346853281, 6.145520375271122),
+                v(-0.9903935263763594, 0.12242832640797277, 0.06428038429211912),
+                6.24715871322197,
+            ),
+        ),
+    };
+    let path = &motion.run_from_there(AMPLE).expect("a tangency")[0];
+    assert_eq!((path.points.len(), path.minimum), (6, Some(4)));
 }

@@ -9,8 +9,9 @@ use std::ops::Range;
 use apt_geometry::Vec3;
 
 use super::{
-    March, Vertex,
+    March, Vertex, first_stop,
     spared::{hand_of, is_onward},
+    tangency,
 };
 use crate::{
     attitude::Sweep,
@@ -94,7 +95,7 @@ impl March<'_> {
         path: &[Vec3],
         bent: &Bent,
     ) -> Result<(), MotionFailure> {
-        if self.prepared.attitude.turns() || self.tangency.has_any() || self.points.len() <= LEAST_TOGETHER {
+        if self.prepared.attitude.turns() || self.points.len() <= LEAST_TOGETHER {
             return Ok(());
         }
         let most = self.state.maximum_step;
@@ -134,25 +135,34 @@ impl March<'_> {
         Ok(())
     }
 
-    /// Whether there are many more vectors than are needed.
+    /// Whether there are many more vectors than are needed. Before a tangency one less is: it is not known how far before its end another path may end.
     fn is_wasteful(&self, needed: f64) -> bool {
-        self.points.len() as f64 > needed * (1.0 + MORE) + BESIDES
+        let least = needed - if self.tangency.has_any() { 1.0 } else { 0.0 };
+        self.points.len() as f64 > least * (1.0 + MORE) + BESIDES
     }
 
-    /// How many positions are met along all vectors but the last; `None` if one of them stops the motion.
-    fn met_along(&self, positions: &[Vec3]) -> Result<Option<usize>, MotionFailure> {
+    /// How many positions and tangencies are met along all vectors but the last; `None` if one of them stops the motion.
+    pub(super) fn met_along(&self, positions: &[Vec3]) -> Result<Option<usize>, MotionFailure> {
         let mut watcher = Watcher::new(self.prepared, self.checks);
+        let mut tangency = tangency::Watch::new(self.prepared, self.checks, self.stepper.patience());
         let axis = &self.prepared.tool.axis;
         for pair in positions[..positions.len() - 1].windows(2) {
             if self.stepper.patience().is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             let sweep = Sweep::new(&self.prepared.tool, (&pair[0], axis), (&pair[1], axis));
-            if watcher.scan(&sweep).is_some() {
+            let is_stopped = if tangency.has_any() {
+                let way = pair[1] - pair[0];
+                let [from, to] = [pair[0], pair[1]].map(|tip| Vertex::at(self.prepared, tip, &way));
+                first_stop((&mut watcher, &mut tangency), &sweep, [&from?, &to?])?.is_some()
+            } else {
+                watcher.scan(&sweep).is_some()
+            };
+            if is_stopped {
                 return Ok(None);
             }
         }
-        Ok(Some(watcher.met))
+        Ok(Some(watcher.met + tangency.met))
     }
 
     /// Saves a vector in stretches that are apart, beginning with the one that leaves the most room; whether there was one. So many vectors may still be

@@ -67,10 +67,24 @@ impl March<'_> {
     /// Spares one of two vertices wherever a short vector is between them, beginning with the first. The vertices beside both may move.
     pub(super) fn spare_vertices(&mut self, start: &Vertex) -> Result<(), MotionFailure> {
         // Of several positions on a check surface each counts as the vectors have met it.
-        let counts = self.watcher.met > 0 || self.tangency.has_any();
-        if self.prepared.attitude.turns() || counts {
+        if self.prepared.attitude.turns() || self.watcher.met > 0 {
             return Ok(());
         }
+        let before = self.tangency.has_any().then(|| self.points.clone());
+        self.spare_all(start)?;
+        let Some(before) = before.filter(|before| *before != self.points) else { return Ok(()) };
+        // So does each tangency.
+        let along = |points: &[Vec3]| -> Vec<Vec3> {
+            std::iter::once(start.tip).chain(points.iter().copied()).collect()
+        };
+        if self.met_along(&along(&self.points))? != self.met_along(&along(&before))? {
+            self.points = before;
+        }
+        Ok(())
+    }
+
+    /// The same, whatever is met along the vectors.
+    fn spare_all(&mut self, start: &Vertex) -> Result<(), MotionFailure> {
         let mut k = 1;
         while k + 1 < self.points.len() {
             let is_short = {
