@@ -105,27 +105,23 @@ pub(crate) fn upward_bend(
     range: [f64; 2],
     is_of_use: &dyn Fn(f64) -> bool,
 ) -> Option<Bend> {
-    let region = |center, radius| Region { center, radius, lowest: range[0], highest: range[1] };
     if gauge.on {
+        let region = Region { center: *tip, radius: spread, lowest: range[0], highest: range[1] };
         let foot = gauge.surface.foot(tip);
-        return Some(gauge.surface.bend(gauge.side, &foot, &region(*tip, spread), tool.patience));
+        return Some(gauge.surface.bend(gauge.side, &foot, &region, tool.patience));
     }
     if let Some(bend) = disc_bend(gauge, tool, tip, spread, range) {
         return Some(bend);
     }
-    let surface = gauge.met(tool);
     let touch = || gauge.contact(tool, tip).tool;
+    let surface = gauge.met(tool);
     let (tool, tip) = &gauge.body(tool, tip);
-    let radius = tool.radius();
+    let corner = corner(tool);
+    let within = Within { surface, side: gauge.side, tool, tip, corner: corner.as_ref(), spread, range };
     // Of what is known to be far away nothing comes within range.
     let near = near::Around::new(gauge, tool, tip, spread);
-    let corner = corner(tool);
     let mut cells = boxes(tool, corner.as_ref(), near.within(range[1] + spread));
     let feet = near.feet();
-    let close = if surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
-    // What the bound is, and what it is at least.
-    let (mut greatest, mut needed, mut seen) = (0.0_f64, 0.0_f64, 0);
-    let within = Within { surface, side: gauge.side, tool, tip, corner: corner.as_ref(), spread, range };
     // What a surface of lines in one direction says of a place is told without a search of its parts.
     if surface.generator().is_some()
         && likely
@@ -139,89 +135,128 @@ pub(crate) fn upward_bend(
     if let Some(place) = witness.take() {
         cut_down(&mut cells, &place, spread);
     }
-    let mut is_probed = false;
+    let mut bounds =
+        Bounds { greatest: 0.0, needed: 0.0, seen: 0, is_probed: false, within, feet, is_of_use };
     while let Some(cell) = cells.pop() {
-        seen += 1;
+        match bounds.look(&cell, || if likely.is_empty() { vec![touch()] } else { with_middles(likely) }) {
+            Look::Closed => {}
+            Look::Open => cells.extend(cell.halves_towards(&in_frame)),
+            Look::Unbounded => return Some(Bend::Unbounded),
+            Look::Witnessed(found) => {
+                witness.set(Some(cell.middle));
+                return found;
+            }
+        }
+    }
+    Some(Bend::AtMost(bounds.greatest))
+}
+
+/// The bounds of the boxes that have been looked at.
+struct Bounds<'a> {
+    within: Within<'a>,
+    feet: near::Feet<'a>,
+    is_of_use: &'a dyn Fn(f64) -> bool,
+    /// The bound of all of them, and what it is at least.
+    greatest: f64,
+    needed: f64,
+    seen: u32,
+    is_probed: bool,
+}
+
+/// What a look at a box leads to.
+enum Look {
+    /// Nothing more is asked of it.
+    Closed,
+    /// Its halves are looked at.
+    Open,
+    /// There is no bound.
+    Unbounded,
+    /// That is the bound of all, and the box tells it.
+    Witnessed(Option<Bend>),
+}
+
+impl Bounds<'_> {
+    /// Looks at a box; `probes` are places of the tool that are likely to be in contact.
+    fn look(&mut self, cell: &Cell, probes: impl FnOnce() -> Vec<Vec3>) -> Look {
+        let Within { surface, side, tool, tip, corner, spread, range } = self.within;
+        self.seen += 1;
         #[cfg(test)]
         BOXES.set(BOXES.get() + 1);
-        if seen % BOXES_A_QUESTION == 0 && tool.patience.is_over() {
-            return Some(Bend::Unbounded);
+        if self.seen.is_multiple_of(BOXES_A_QUESTION) && tool.patience.is_over() {
+            return Look::Unbounded;
         }
-        if cell.beside(radius) || corner.is_some_and(|corner| cell.is_held(tool, &corner)) {
-            continue;
+        if cell.beside(tool.radius()) || corner.is_some_and(|corner| cell.is_held(tool, corner)) {
+            return Look::Closed;
         }
-        let range = range.map(|distance| distance + cell.ball);
-        let region = |center, radius| Region { center, radius, lowest: range[0], highest: range[1] };
-        let center = tip
-            + tool.across[0] * cell.middle[0]
-            + tool.across[1] * cell.middle[1]
-            + tool.axis * cell.middle[2];
+        let [lowest, highest] = range.map(|distance| distance + cell.ball);
+        let center = cell.center(tool, tip);
         let reach = Vec3::from(cell.half).norm() + spread;
-        let foot = match feet.foot(&center) {
+        let foot = match self.feet.foot(&center) {
             Some(foot) => foot,
-            None if surface.keeps_off(&center, reach + range[1].max(-range[0])) => continue,
+            None if surface.keeps_off(&center, reach + highest.max(-lowest)) => return Look::Closed,
             None => surface.foot(&center),
         };
-        let distance = gauge.side * foot.distance;
-        if distance - reach > range[1] || distance + reach < range[0] {
-            continue;
+        let distance = side * foot.distance;
+        let is_out_of = |reach: f64| distance - reach > highest || distance + reach < lowest;
+        if is_out_of(reach) {
+            return Look::Closed;
         }
-        let found = surface.bend(gauge.side, &foot, &region(center, reach), tool.patience);
-        let small = cell.is_small(spread);
+        let bend_within = |radius: f64| {
+            let region = Region { center, radius, lowest, highest };
+            surface.bend(side, &foot, &region, tool.patience)
+        };
+        let found = bend_within(reach);
+        let is_small = cell.is_small(spread);
         if let Bend::AtMost(bound) = found
-            && (small || bound <= greatest.max(close * needed))
+            && (is_small || self.is_close(bound))
         {
-            greatest = greatest.max(bound);
-            continue;
+            self.greatest = self.greatest.max(bound);
+            return Look::Closed;
         }
-        let at_best = surface.bend(gauge.side, &foot, &region(center, spread), tool.patience);
+        let at_best = bend_within(spread);
         // Every box about a place in contact has it within its reach, and no better bound.
-        let is_met = distance - spread <= range[1] && distance + spread >= range[0];
+        let is_met = !is_out_of(spread);
         match at_best {
-            Bend::AtMost(least) if is_met && !is_of_use(least) => {
-                witness.set(Some(cell.middle));
-                return None;
-            }
-            Bend::AtMost(least) => needed = needed.max(least),
-            Bend::Unbounded if is_met => {
-                witness.set(Some(cell.middle));
-                return Some(at_best);
-            }
+            Bend::AtMost(least) if is_met && !(self.is_of_use)(least) => return Look::Witnessed(None),
+            Bend::AtMost(least) => self.needed = self.needed.max(least),
+            Bend::Unbounded if is_met => return Look::Witnessed(Some(at_best)),
             Bend::Unbounded => {}
         }
         // Where the surface ends within reach of a place in contact no box helps.
-        if found == Bend::Unbounded && !is_probed {
-            is_probed = true;
-            let places = if likely.is_empty() { vec![touch()] } else { with_middles(likely) };
-            if places.iter().any(|place| within.bend_at(place) == Some(Bend::Unbounded)) {
-                return Some(Bend::Unbounded);
-            }
+        let is_first = found == Bend::Unbounded && !std::mem::replace(&mut self.is_probed, true);
+        if is_first && probes().iter().any(|place| self.within.bend_at(place) == Some(Bend::Unbounded)) {
+            return Look::Unbounded;
         }
-        let enough = match (found, at_best) {
-            (Bend::AtMost(bound), _) => bound <= greatest.max(close * needed),
-            _ => false,
-        };
-        let limit = match (found, surface) {
+        self.settle(found, is_small)
+    }
+
+    /// Whether a bound is near enough to what the bound of all is at least.
+    fn is_close(&self, bound: f64) -> bool {
+        let close = if self.within.surface.has_charts() { CLOSE_BY_CHART } else { CLOSE };
+        bound <= self.greatest.max(close * self.needed)
+    }
+
+    /// Whether a box with such a bound is halved.
+    fn settle(&mut self, found: Bend, is_small: bool) -> Look {
+        let limit = match (found, self.within.surface) {
             (Bend::Unbounded, Surface::Sculptured(_)) => MAX_BOXES_UNBOUNDED_BY_PATCH,
             (Bend::Unbounded, _) => MAX_BOXES_UNBOUNDED,
             _ => MAX_BOXES,
         };
-        if enough || small || seen >= limit {
-            match found {
-                Bend::AtMost(bound) => greatest = greatest.max(bound),
-                other => {
-                    witness.set(Some(cell.middle));
-                    return Some(other);
-                }
+        let is_last = is_small || self.seen >= limit;
+        match found {
+            Bend::AtMost(bound) if is_last || self.is_close(bound) => {
+                self.greatest = self.greatest.max(bound);
+                Look::Closed
             }
-        } else {
-            cells.extend(cell.halves_towards(&in_frame));
+            Bend::Unbounded if is_last => Look::Witnessed(Some(found)),
+            _ => Look::Open,
         }
     }
-    Some(Bend::AtMost(greatest))
 }
 
 /// A tool beside a surface, whose points stray no farther from their places than a spread, and count within a range of distances.
+#[derive(Clone, Copy)]
 struct Within<'a> {
     surface: &'a Surface,
     side: f64,
@@ -350,6 +385,12 @@ impl Cell {
     fn beside(&self, radius: f64) -> bool {
         let near = |k: usize| (self.middle[k].abs() - self.half[k]).max(0.0);
         near(0).hypot(near(1)) > radius
+    }
+
+    /// Its middle in space.
+    fn center(&self, tool: &Tool, tip: &Vec3) -> Vec3 {
+        let [x, y, z] = self.middle;
+        tip + tool.across[0] * x + tool.across[1] * y + tool.axis * z
     }
 
     /// Whether it is halved no more where places stray so far.

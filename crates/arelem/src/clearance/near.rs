@@ -21,7 +21,7 @@ use apt_geometry::{
     surface::{Place, Steady, Surface},
 };
 
-pub(super) use self::around::Around;
+pub(super) use self::around::{Around, Feet};
 #[cfg(test)]
 pub(crate) use self::held::LOOKS;
 use self::held::{Cap, Held, Rest};

@@ -80,13 +80,7 @@ pub(super) fn prepare<'a>(
     let mut part = Working::new(state, RoleName::Part, &state.part, relation(part_on), part_on, patience)?;
     let mut drive = Working::new(state, RoleName::Drive, drive, relation(drive_on), drive_on, patience)?;
     for role in [&part, &drive] {
-        if role.band() <= 0.0 {
-            return Err(MotionFailure::NoTolerance {
-                role: role.name,
-                inside: role.inside,
-                outside: role.outside,
-            });
-        }
+        has_band(role)?;
     }
     let part_contact = start_check(&tool, &mut part, (&tip, state.side_of_part), size)?;
     // A direction that is not defined is the plainer mistake: it is named before a drive surface out of reach.
@@ -129,25 +123,12 @@ pub(super) fn prepare<'a>(
     let standing = tangent;
     tangent = line_of_turning(&attitude, [&part, &drive], &tip, (&standing, &wanted)).unwrap_or(standing);
     let drive_side = judge_side(state, &tool, &drive_contact, &tangent, warnings);
-    let mut working = Vec::with_capacity(checks.len());
-    for (index, check) in checks.iter().enumerate() {
-        let on =
-            check.relation == Relation::On || (super::is_tangent(check.relation) && tangent_on(check, state));
-        working.push(Working::new(
-            state,
-            RoleName::Check(index),
-            &check.surface,
-            check.relation,
-            on,
-            patience,
-        )?);
-    }
-    warn_of_surface_twice([&part, &drive].into_iter().chain(&working), warnings);
+    let checks = working_checks(state, checks, patience)?;
+    warn_of_surface_twice([&part, &drive].into_iter().chain(&checks), warnings);
     if attitude.turns() {
         part.turn_freely(&tip);
         drive.turn_freely(&tip);
     }
-    let checks = working;
     Ok(Prepared {
         tool,
         attitude,
@@ -163,6 +144,26 @@ pub(super) fn prepare<'a>(
         drive_side,
         aim: None,
     })
+}
+
+/// Without a tolerance no cut vector is in it.
+fn has_band(role: &Working) -> Result<(), MotionFailure> {
+    let Working { name, inside, outside, .. } = *role;
+    if role.band() > 0.0 { Ok(()) } else { Err(MotionFailure::NoTolerance { role: name, inside, outside }) }
+}
+
+/// The check surfaces at work.
+fn working_checks(
+    state: &State,
+    checks: &[CheckSurface],
+    patience: Patience<'_>,
+) -> Result<Vec<Working>, MotionFailure> {
+    let working = |(index, check): (usize, &CheckSurface)| {
+        let relation = check.relation;
+        let on = relation == Relation::On || (super::is_tangent(relation) && tangent_on(check, state));
+        Working::new(state, RoleName::Check(index), &check.surface, relation, on, patience)
+    };
+    checks.iter().enumerate().map(working).collect()
 }
 
 impl<'a> Prepared<'a> {
