@@ -15,8 +15,8 @@ use Parameter::{Choice, Entity, Scalar, Word};
 const PLACE: Parameter = Choice(&[&[Entity("point", &[GeometryKind::Point])], &[Scalar("x"), Scalar("y")]]);
 const SLOPE: Parameter = Scalar("slope");
 
-/// Value of a pair of lines at a point, relative to the distances from the other points, below which the point lies on
-/// the pair and the conic falls apart.
+/// Value of a pair of lines at a point, relative to the square of its distance from the farthest other point, below which
+/// the point lies on the pair and the conic falls apart.
 const ON_LINES: f64 = 1e-9;
 
 pub(super) static FORMATS: &[Format] = &[
@@ -32,6 +32,7 @@ pub(super) static FORMATS: &[Format] = &[
                 [chord(first, second)?, chord(fourth, fifth)?],
                 [chord(first, fourth)?, chord(second, fifth)?],
                 third,
+                &[first, second, fourth, fifth],
             )
         },
     },
@@ -46,6 +47,7 @@ pub(super) static FORMATS: &[Format] = &[
                 [sloped(&first, slope)?, chord(&fourth, &fifth)?],
                 [chord(&first, &fourth)?, chord(&first, &fifth)?],
                 &third,
+                &[&first, &fourth, &fifth],
             )
         },
     },
@@ -58,7 +60,12 @@ pub(super) static FORMATS: &[Format] = &[
             let (second, second_slope) = (reader.place()?, reader.scalar()?);
             let third = reader.place()?;
             let between = chord(&first, &second)?;
-            pencil([sloped(&first, first_slope)?, sloped(&second, second_slope)?], [between, between], &third)
+            pencil(
+                [sloped(&first, first_slope)?, sloped(&second, second_slope)?],
+                [between, between],
+                &third,
+                &[&first, &second],
+            )
         },
     },
 ];
@@ -97,12 +104,17 @@ fn sloped(point: &Vec3, slope: f64) -> Result<Plane, Impossible> {
     Plane::through(*point, Vec3::new(slope, -1.0, 0.0)).ok_or(Impossible::ZeroLength)
 }
 
-fn pencil(first: [Plane; 2], second: [Plane; 2], through: &Vec3) -> Result<Geometry, DefinitionError> {
+/// The conic of the pencil of two pairs of lines through the points `others` that also goes through one more point.
+fn pencil(
+    first: [Plane; 2],
+    second: [Plane; 2],
+    through: &Vec3,
+    others: &[&Vec3],
+) -> Result<Geometry, DefinitionError> {
     let value = |pair: &[Plane; 2]| pair[0].signed_distance(through) * pair[1].signed_distance(through);
     let (of_first, of_second) = (value(&first), value(&second));
-    let size = through.norm_squared() + first[0].distance.abs().max(second[0].distance.abs()).powi(2);
-    let size = size.max(of_first.abs()).max(of_second.abs());
-    if size == 0.0 || of_first.abs() <= ON_LINES * size || of_second.abs() <= ON_LINES * size {
+    let size = others.iter().map(|other| (*other - through).xy().norm_squared()).fold(0.0, f64::max);
+    if of_first.abs() <= ON_LINES * size || of_second.abs() <= ON_LINES * size {
         return Err(Impossible::Collinear.into());
     }
     let ratio = -of_first / of_second;

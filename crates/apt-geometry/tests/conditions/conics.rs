@@ -174,6 +174,36 @@ fn degeneracy(points: &[Vec3], size: f64) -> f64 {
     least.recip().powi(2)
 }
 
+/// Whether points lie on a line is a matter of their distances from each other, not from the origin.
+#[test]
+fn conics_through_near_points_far_away() {
+    let round = [(5.0, 0.0), (4.0, 3.0), (0.0, 5.0), (-3.0, 4.0), (3.0, -4.0)];
+    for (x, y) in [(0.0, 0.0), (2e4, -1e4), (-3e5, 2e5)] {
+        let setting = Setting { at: Vec3::new(x, y, 0.0), size: 5.0 };
+        let points = round.map(|(along, across)| Vec3::new(x + along, y + across, 0.0));
+        let place = |index: usize| Part::Place(points[index], 2);
+        let parts = [
+            vec![Part::Word(Modifier::FivePoints), place(0), place(1), place(2), place(3), place(4)],
+            vec![Part::Word(Modifier::FourPointsOneSlope), place(2), Part::Number(0.0), place(0), place(1), place(3)],
+            vec![
+                Part::Word(Modifier::ThreePointsTwoSlopes),
+                place(2),
+                Part::Number(0.0),
+                place(4),
+                Part::Number(0.75),
+                place(0),
+            ],
+        ];
+        for parts in parts {
+            let figure = Figure::flat(GeometryKind::LoftConic, setting, Turns::None, parts);
+            let conic = figure.define().unwrap_or_else(|reason| panic!("at {x}, {y}: {reason:?}"));
+            for point in &points {
+                on_conic(&setting, &conic, point).expect("a circle through the points");
+            }
+        }
+    }
+}
+
 fn far(setting: &Setting) -> f64 {
     1.0 + (setting.at.norm() / setting.size).powi(2)
 }
