@@ -127,11 +127,17 @@ fn other_dialects() {
 }
 
 #[test]
-fn apt4_cuts_long_names() {
-    let parsed = parse("LONGNAMES=LONGNAM+1", Apt4);
-    assert!(!parsed.is_broken());
-    assert_eq!((parsed.elements[0].text.as_str(), parsed.elements[2].text.as_str()), ("LONGNA", "LONGNA"));
-    assert_eq!(parsed.errors.len(), 2);
+fn long_names_are_told_and_cut() {
+    for dialect in [Apt3, Apt4] {
+        let parsed = parse("LONGNAMES=LONGNAM+1", dialect);
+        assert!(!parsed.is_broken());
+        assert_eq!(
+            (parsed.elements[0].text.as_str(), parsed.elements[2].text.as_str()),
+            ("LONGNA", "LONGNA"),
+            "{dialect:?}"
+        );
+        assert_eq!(parsed.errors.len(), 2);
+    }
 }
 
 #[test]

@@ -184,7 +184,14 @@ fn conics_through_near_points_far_away() {
         let place = |index: usize| Part::Place(points[index], 2);
         let parts = [
             vec![Part::Word(Modifier::FivePoints), place(0), place(1), place(2), place(3), place(4)],
-            vec![Part::Word(Modifier::FourPointsOneSlope), place(2), Part::Number(0.0), place(0), place(1), place(3)],
+            vec![
+                Part::Word(Modifier::FourPointsOneSlope),
+                place(2),
+                Part::Number(0.0),
+                place(0),
+                place(1),
+                place(3),
+            ],
             vec![
                 Part::Word(Modifier::ThreePointsTwoSlopes),
                 place(2),

@@ -92,7 +92,7 @@ pub enum SignRule {
 /// What becomes of a name with more characters than [`Dialect::name_length`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum LongNames {
-    /// It is an error (language reference 1.8).
+    /// It is an error, and what follows takes its first characters for the name (language reference 1.8).
     Refused,
     /// It is cut, with a warning (language reference 10.4).
     Cut,

@@ -192,7 +192,7 @@ impl Lexer<'_> {
         // Names consist of ASCII letters and digits.
         let cut = spelling.get(..usize::from(limit)).map(SmolStr::new);
         self.error(SyntaxErrorKind::NameTooLong { name: spelling.clone(), limit, pieces }, start);
-        if rule == LongNames::Cut { cut.unwrap_or(spelling) } else { spelling }
+        if rule == LongNames::Taken { spelling } else { cut.unwrap_or(spelling) }
     }
 
     /// How many characters belong to the name or the digits that begin here.
