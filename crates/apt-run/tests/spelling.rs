@@ -61,6 +61,65 @@ fn a_misspelt_type_of_geometry_is_told_where_it_stands() {
     assert!(hint.is_some());
 }
 
+/// The finding of a program that has one, with its number, and the text with its first fix.
+fn mended(text: &str) -> (Diagnostic, String) {
+    let all = found(text);
+    let told = all
+        .iter()
+        .find(|one| !one.fixes.is_empty() && one.wording.hint.is_some())
+        .unwrap_or_else(|| panic!("{text}: {all:?}"));
+    let mut mended = text.to_owned();
+    for (range, replacement) in &told.fixes[0].edits {
+        mended.replace_range(range.clone(), replacement);
+    }
+    (told.clone(), mended)
+}
+
+#[test]
+fn a_misspelt_type_is_told_in_a_nested_definition() {
+    for (body, wrong, right) in [
+        ("L1=LINE/(PIONT/0,0,0),(1,2,3)", "PIONT", "POINT"),
+        ("L1=LINE/(1,2,3),(PIONT/0,0)", "PIONT", "POINT"),
+        ("L1=LINE/(P=PIONT/0,0,0),(1,2,3)", "PIONT", "POINT"),
+        ("P1=POINT/CENTER,(CIRCEL/1,2,3,4)", "CIRCEL", "CIRCLE"),
+        ("P1=POINT/CENTER,(C1=CIRCEL/1,2,3,4)", "CIRCEL", "CIRCLE"),
+        ("P1=POINT/INTOF,(LINE/XAXIS),(LIEN/(1,2),(3,4))", "LIEN", "LINE"),
+        ("P1=POINT/INTOF,(LINE/XAXIS),(LIEN/(POINT/1,2),(3,4))", "LIEN", "LINE"),
+        ("L1=LIEN/(1,2),(3,4)", "LIEN", "LINE"),
+        ("L1=LIEN/(POINT/1,2),(3,4)", "LIEN", "LINE"),
+        ("A=LNTHF((VECTR/1,2,3))", "VECTR", "VECTOR"),
+        ("GOTO/(PIONT/1,2)", "PIONT", "POINT"),
+    ] {
+        let (told, mended) = mended(&format!("{body}\nFINI\n"));
+        assert!(told.wording.message.starts_with(wrong), "{body}: {}", told.wording.message);
+        assert_eq!(told.wording.hint.as_deref(), Some(&*format!("did you mean {right}?")), "{body}");
+        assert_eq!(mended, format!("{}\nFINI\n", body.replacen(wrong, right, 1)));
+        let left: Vec<Diagnostic> =
+            found(&mended).into_iter().filter(|one| one.wording.apt3.is_some()).collect();
+        assert!(left.is_empty(), "{mended}: {left:?}");
+    }
+}
+
+/// A name without a value among the operands of a word may be one of the words that belong there.
+#[test]
+fn a_misspelt_word_among_operands_is_told() {
+    for (text, wrong, right) in [
+        ("C1=CIRCLE/CENTRE,(1,2),RADIUS,3\nFINI\n", "CENTRE", "CENTER"),
+        ("L1=LINE/(1,2),ATNAGL,30\nFINI\n", "ATNAGL", "ATANGL"),
+        ("L1=LINE/(P1=POINT/CENTRE,(CIRCLE/1,2,3)),(3,4)\nFINI\n", "CENTRE", "CENTER"),
+        ("L1=LINE/XAXIS\nL2=LINE/YAXIS\nGO/PASTT,L1,L2\nFINI\n", "PASTT", "PAST"),
+    ] {
+        let (told, mended) = mended(text);
+        assert_eq!(told.wording.code, "APT0101");
+        assert!(told.wording.message.starts_with(wrong), "{text}: {}", told.wording.message);
+        assert_eq!(told.wording.hint.as_deref(), Some(&*format!("did you mean {right}?")), "{text}");
+        assert_eq!(mended, text.replacen(wrong, right, 1));
+    }
+    // What divides in an expression is no word, and names that have a value come first where they are as near.
+    let (_, hint, _) = first("A=3\nB=A+(PIONT/3)\nGOTO/A,B,0\nFINI\n");
+    assert!(hint.is_some_and(|hint| !hint.contains("POINT")));
+}
+
 #[test]
 fn names_without_a_letter_in_common_are_not_alike() {
     let (code, hint, titles) = first("X=3\nGOTO/B,X,0\nFINI\n");

@@ -207,6 +207,9 @@ fn of_program(tree: &SyntaxTree, finding: &Finding) -> Diagnostic {
     {
         text.hint = Some(question);
     }
+    if let Some(question) = crate::fix::operands_like(tree, finding).as_deref().and_then(similar) {
+        text.hint = Some(question);
+    }
     let severity = match finding.severity {
         ProgramSeverity::Hint => Severity::Hint,
         ProgramSeverity::Information => Severity::Information,

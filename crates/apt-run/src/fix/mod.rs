@@ -5,6 +5,7 @@
 
 mod block;
 mod motion;
+mod spelling;
 
 #[cfg(test)]
 mod tests;
@@ -14,19 +15,15 @@ use std::ops::Range;
 use apt_program::{ControlFinding, Finding, FindingKind, Origin, SculpturedFinding, symbols::similar_names};
 use apt_syntax::{
     SyntaxTree, TextRange, TextSize,
-    dialect::{Dialect, name_in_comment},
+    dialect::name_in_comment,
     error::SyntaxErrorKind,
     grammar::ParsedStatement,
     statement::{Body, ElementKind},
     tree::StatementView,
-    vocabulary,
 };
 use smol_str::SmolStr;
 
 use crate::{diagnostic::Fix, document, settings::Settings};
-
-/// A name shorter than this resembles too many words of the language.
-const SHORTEST_MISSPELT_WORD: usize = 4;
 
 /// The fixes of a finding, the likeliest first. A comment that names the dialect counts for nothing where the settings do.
 pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding, settings: &Settings) -> Vec<Fix> {
@@ -38,8 +35,10 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding, settings: &Settin
     let index = here.view.index;
     match &finding.kind {
         FindingKind::Syntax(kind) => here.syntax(kind),
-        FindingKind::Undefined { name, similar }
-        | FindingKind::ListedUndefined { name, similar }
+        FindingKind::Undefined { name, similar } => {
+            here.misspelt(name, &here.words_or_names_like(name, similar))
+        }
+        FindingKind::ListedUndefined { name, similar }
         | FindingKind::UndefinedOption { name, similar, .. }
         | FindingKind::Control(ControlFinding::UnknownLabel { name, similar })
         | FindingKind::Control(ControlFinding::UnknownMacro { name, similar }) => {
@@ -81,6 +80,7 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding, settings: &Settin
 }
 
 pub(crate) use motion::of_run;
+pub(crate) use spelling::{operands_like, words_like};
 
 /// The program without the statement of a place, where it stands in the program itself, does nothing else and can go
 /// away whole.
@@ -126,24 +126,6 @@ pub(crate) fn written(tree: &SyntaxTree, origin: &Origin) -> Option<String> {
     let text = here.written(whole);
     let single = here.parsed.statement.parts.len() == 1 && here.parsed.statement.label.is_none();
     (single && !text.contains(['\n', '\r'])).then(|| text.to_owned())
-}
-
-/// Words of the language that are spelled like a name which stands in the place of one; none for other errors.
-pub(crate) fn words_like(dialect: Dialect, error: &SyntaxErrorKind) -> Vec<SmolStr> {
-    let (name, begins) = match error {
-        SyntaxErrorKind::NameWithoutEquals { name, .. } => (name, true),
-        SyntaxErrorKind::ListWithoutWord { name, .. } => (name, false),
-        _ => return Vec::new(),
-    };
-    if name.chars().count() < SHORTEST_MISSPELT_WORD {
-        return Vec::new();
-    }
-    let fits = |class: vocabulary::WordClass| match begins {
-        true => class.begins_statements(),
-        false => class == vocabulary::WordClass::GeometricType,
-    };
-    let words = vocabulary::words().iter().filter(|word| fits(word.class) && word.is_in(dialect.name));
-    similar_names(name, words.map(|word| word.spelling))
 }
 
 /// The statement that a finding is about.

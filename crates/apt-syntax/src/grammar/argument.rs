@@ -162,6 +162,11 @@ impl Parser<'_> {
         }
         self.bump();
         let coordinates = self.nested(|parser| parser.parameters(ListRules::POINT))?;
+        if coordinates.len() > 3
+            && let Some(error) = self.list_without_word(false)
+        {
+            return Err(error);
+        }
         self.close()?;
         self.note(SyntaxKind::NestedPoint, first);
         if coordinates.len() > 3 {

@@ -263,7 +263,10 @@ impl<'a> Parser<'a> {
         }
         match self.kind(0) {
             None => self.fail(SyntaxErrorKind::UnclosedParenthesis),
-            Some(ElementKind::Comma) => self.fail(SyntaxErrorKind::UnexpectedMark(",".into())),
+            Some(ElementKind::Comma) => match self.list_without_word(false) {
+                Some(error) => Err(error),
+                None => self.fail(SyntaxErrorKind::UnexpectedMark(",".into())),
+            },
             Some(_) => self.fail_after_operand(false),
         }
     }

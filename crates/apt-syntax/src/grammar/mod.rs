@@ -311,6 +311,13 @@ impl<'a> Parser<'a> {
                 Some(error) => return Err(error),
                 None => SyntaxErrorKind::MissingSeparator,
             },
+            ElementKind::Equals => {
+                let Some(name) = self.divided_name_behind(self.position) else {
+                    return self.fail(SyntaxErrorKind::UnexpectedMark(element.text.clone()));
+                };
+                let kind = SyntaxErrorKind::ListWithoutWord { name: name.text.clone(), before_word: false };
+                return Err(SyntaxError::new(kind, name.range));
+            }
             ElementKind::Relation => SyntaxErrorKind::RelationNotAllowed(element.text.clone()),
             ElementKind::RightParenthesis => SyntaxErrorKind::UnopenedParenthesis,
             ElementKind::Bad => return self.fail_at_bad(),
@@ -320,10 +327,34 @@ impl<'a> Parser<'a> {
     }
 
     /// An error at the name behind the last `=` or open parenthesis before the present element, if a slash follows it: most
-    /// likely a misspelt word with its list.
+    /// likely a misspelt word with its list. A parenthesis that follows such a slash at once is the first item of the list.
     fn list_without_word(&self, before_word: bool) -> Option<SyntaxError> {
+        let mut opening = self.opening_before(self.position)?;
+        loop {
+            if let Some(name) = self.divided_name_behind(opening) {
+                let kind = SyntaxErrorKind::ListWithoutWord { name: name.text.clone(), before_word };
+                return Some(SyntaxError::new(kind, name.range));
+            }
+            let outer = self.opening_before(opening)?;
+            if outer + 3 != opening {
+                return None;
+            }
+            opening = outer;
+        }
+    }
+
+    /// The name with a slash that follows an element at once.
+    fn divided_name_behind(&self, element: usize) -> Option<&Element> {
+        match self.elements.get(element + 1..=element + 2)? {
+            [name, slash] if name.kind == ElementKind::Name && slash.kind == ElementKind::Slash => Some(name),
+            _ => None,
+        }
+    }
+
+    /// The last `=`, or open parenthesis that is not closed, before an element.
+    fn opening_before(&self, end: usize) -> Option<usize> {
         let mut closed = 0_usize;
-        let opening = self.elements.get(..self.position)?.iter().rposition(|element| match element.kind {
+        self.elements.get(..end)?.iter().rposition(|element| match element.kind {
             ElementKind::RightParenthesis => {
                 closed += 1;
                 false
@@ -333,14 +364,7 @@ impl<'a> Parser<'a> {
                 false
             }
             kind => closed == 0 && matches!(kind, ElementKind::LeftParenthesis | ElementKind::Equals),
-        })?;
-        match self.elements.get(opening + 1..=opening + 2)? {
-            [name, slash] if name.kind == ElementKind::Name && slash.kind == ElementKind::Slash => {
-                let kind = SyntaxErrorKind::ListWithoutWord { name: name.text.clone(), before_word };
-                Some(SyntaxError::new(kind, name.range))
-            }
-            _ => None,
-        }
+        })
     }
 
     /// The lexer has said what is wrong with a bad element; its error is repeated and later recognised as the same.
