@@ -33,7 +33,7 @@ use apt_syntax::{
     vocabulary::{self, WordClass},
 };
 
-use apt_post::punch::lacking;
+use apt_post::punch::find_lacking;
 pub use apt_post::{
     MachineInfo,
     punch::{Code as TapeCode, PunchError, length_inches},
@@ -272,7 +272,7 @@ impl Analysis {
         let mut tape = apt_post::post_until(source.records.list(), machine, &options, patience)
             .map_err(|apt_post::Cancelled| Cancelled)?;
         if let Some(code) = code {
-            tape.findings.extend(lacking(&tape, code));
+            find_lacking(&mut tape, code);
         }
         let Source { records, diagnostics, .. } = source;
         let diagnostics = catalogue::tape_diagnostics(tree, &tape, records.origins(), settings, patience)

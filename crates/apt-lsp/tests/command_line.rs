@@ -362,6 +362,19 @@ fn tapes_are_punched_and_pictures_are_images() {
         assert!(ran.stderr.contains("PPRINT READY") && ran.stderr.contains("help"), "{ran:?}");
         assert!(!folder.0.join("odd.tape").exists(), "{code}");
     }
+    // A character that the control lacks, too, is told once, as what keeps the tape from being punched.
+    for (text, told) in [("PPRINT BORE Ø 5", vec!["'Ø'"]), ("PPRINT Ø ØK?", vec!["'Ø'", "'?'"])] {
+        folder.write("odd.apt", GOOD.replace("FINI", &format!("{text}\nFINI")));
+        let plain = folder.run(&["post", "odd.apt", "--machine", "fanuc-mill3"]);
+        assert!(plain.stderr.contains("warning[APT0890]: 'Ø'"), "{plain:?}");
+        let ran = folder.run(&["post", "odd.apt", "--machine", "fanuc-mill3", "--punch", "eia"]);
+        assert_eq!((ran.code, ran.stderr.matches("APT0890").count()), (1, 0), "{ran:?}");
+        assert_eq!(ran.stderr.matches("error[APT0898]").count(), told.len(), "{ran:?}");
+        assert!(
+            told.iter().all(|one| ran.stderr.contains(&format!("APT0898]: {one} is not in the EIA"))),
+            "{ran:?}"
+        );
+    }
     assert_eq!(folder.run(&["view", "good.apt", "-o", "path.png"]).code, 0);
     assert!(std::fs::read(folder.0.join("path.png")).unwrap().starts_with(b"\x89PNG"));
 }

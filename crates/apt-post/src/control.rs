@@ -13,6 +13,9 @@ use crate::{
     template::{Piece, pieces},
 };
 
+/// What is written for a character of a remark that the control lacks.
+pub(crate) const REPLACEMENT: char = '?';
+
 /// Values for the placeholders of a template.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Values {
@@ -278,7 +281,7 @@ impl<'a> Control<'a> {
                 ' '..='~' => clean.push(character),
                 _ => {
                     self.find(PostFindingKind::Character { character });
-                    clean.push('?');
+                    clean.push(REPLACEMENT);
                 }
             }
         }

@@ -1,8 +1,11 @@
 //! Punched tape: characters as rows of holes in EIA RS-244 (odd parity) or ISO 840 (even parity).
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    control::REPLACEMENT,
     finding::{PostFinding, PostFindingKind},
     tape::{Block, Tape},
 };
@@ -150,24 +153,42 @@ pub fn punch(text: &str, code: Code) -> Result<Vec<u8>, PunchError> {
     Ok(image)
 }
 
-/// What keeps a tape from being punched: the characters that the code lacks, each once for a block.
-pub fn lacking(tape: &Tape, code: Code) -> Vec<PostFinding> {
-    let of_block = |(index, block): (usize, &Block)| {
-        let mut lacking: Vec<char> = Vec::new();
-        for character in block.text.chars() {
-            if row_of(character, code).is_none() && !lacking.contains(&character) {
-                lacking.push(character);
+/// Finds what keeps a tape from being punched: the characters of each block that the code lacks, each once. One that the
+/// control lacks stands on the tape as another one; where that cannot be punched, the finding is of the one in the program,
+/// and takes the place of [`PostFindingKind::Character`].
+pub fn find_lacking(tape: &mut Tape, code: Code) {
+    let mut replaced: BTreeMap<usize, Vec<char>> = BTreeMap::new();
+    if row_of(REPLACEMENT, code).is_none() {
+        tape.findings.retain(|finding| match finding.kind {
+            PostFindingKind::Character { character } => {
+                replaced.entry(finding.block).or_default().push(character);
+                false
             }
+            _ => true,
+        });
+    }
+    for (index, block) in tape.blocks.iter().enumerate() {
+        let replaced = replaced.get(&index).map_or(&[][..], Vec::as_slice);
+        for character in lacking(block, replaced, code) {
+            let (isn, source) = (block.isn, block.source);
+            let kind = PostFindingKind::NotInTapeCode { character, code };
+            tape.findings.push(PostFinding { isn, source, block: index, kind });
         }
-        let (isn, source) = (block.isn, block.source);
-        lacking.into_iter().map(move |character| PostFinding {
-            isn,
-            source,
-            block: index,
-            kind: PostFindingKind::NotInTapeCode { character, code },
-        })
-    };
-    tape.blocks.iter().enumerate().flat_map(of_block).collect()
+    }
+}
+
+/// The characters of a block that a code lacks, each once; `replaced` are those in whose place [`REPLACEMENT`] stands.
+fn lacking(block: &Block, replaced: &[char], code: Code) -> Vec<char> {
+    let mut replacements = replaced.len();
+    let mut lacking: Vec<char> = Vec::new();
+    for character in replaced.iter().copied().chain(block.text.chars()) {
+        if character == REPLACEMENT && replacements > 0 {
+            replacements -= 1;
+        } else if row_of(character, code).is_none() && !lacking.contains(&character) {
+            lacking.push(character);
+        }
+    }
+    lacking
 }
 
 /// The text of a tape image; blank and deleted rows are passed over, parity is checked.

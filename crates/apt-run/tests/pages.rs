@@ -56,7 +56,9 @@ fn diagnostics(page: &Page, text: &str) -> Vec<Diagnostic> {
         let machine = apt_post::machine(MACHINE).unwrap();
         let options = apt_post::PostOptions { default_units: Units::Inches, ..Default::default() };
         let mut tape = apt_post::post(&result.records, &machine, &options);
-        tape.findings.extend(apt_post::punch::lacking(&tape, apt_post::punch::Code::Eia));
+        if page.code == "APT0898" {
+            apt_post::punch::find_lacking(&mut tape, apt_post::punch::Code::Eia);
+        }
         list.extend(
             catalogue::tape_diagnostics(
                 document.tree(),
