@@ -208,6 +208,8 @@ fn system_flags_are_checked() {
         ("CLPRNT/ON", &[]),
         ("CLPRNT/OPTION", &[]),
         ("CLPRNT/3", &[Some(133)]),
+        ("CLPRNT/ONN", &[Some(101)]),
+        ("CLPRNT/ON,OFF", &[Some(129)]),
         ("CLTV/OPTION", &[]),
         ("CLTV/ON", &[Some(133)]),
         ("DAC/ON", &[]),
@@ -226,6 +228,13 @@ fn system_flags_are_checked() {
         ("PTONLY/3,7", &[None]),
         ("PTONLY/3", &[Some(129)]),
         ("PTONLY/9", &[Some(553)]),
+        ("PTONLY/1,2", &[Some(553)]),
+        ("PRINT/0", &[]),
+        ("PRINT/1", &[Some(326)]),
+        ("PRINT/3", &[Some(326)]),
+        ("PRINT/4", &[Some(326)]),
+        ("PUNCH/1", &[Some(326)]),
+        ("PUNCH/3,ALL", &[]),
         ("LTV", &[None]),
         ("MIT", &[None]),
         ("CMIT", &[None]),
@@ -235,6 +244,10 @@ fn system_flags_are_checked() {
         let found: Vec<Option<u16>> = problems(&run(text)).into_iter().map(|(_, number)| number).collect();
         assert_eq!(found, *expected, "{text}");
     }
+    let kind = |text: &str| run(text).findings().map(|finding| finding.kind.clone()).next();
+    assert!(matches!(kind("PTONLY/9"), Some(FindingKind::OperandRange { value: 9.0, .. })));
+    assert!(matches!(kind("PTONLY/1,2"), Some(FindingKind::OperandCount { found: 2, .. })));
+    assert!(matches!(kind("CLPRNT/ONN"), Some(FindingKind::UndefinedOption { .. })));
     let warned = run("TANCRV");
     assert!(warned.findings().any(|finding| matches!(finding.kind, FindingKind::NoEffect { .. })));
 }

@@ -168,6 +168,12 @@ impl Evaluator<'_> {
             && self.here.region != Region::Top
             && (self.here.region == Region::Macro) == (super::single_word(statement) == Some("TERMAC"))
         {
+            if self.here.region == Region::Loop {
+                // Those of TERMAC were told where the macro was defined.
+                for error in &statement.errors {
+                    self.report(FindingKind::Syntax(error.kind.clone()), error.range);
+                }
+            }
             return Flow::Next;
         }
         self.statement(statement)

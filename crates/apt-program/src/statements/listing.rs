@@ -128,6 +128,7 @@ impl Evaluator<'_> {
         let format = match number {
             None => return,
             Some(0.0) => return self.list(ListingKind::NewPage, major.range),
+            Some(_) if self.lacks_list(major) => return,
             Some(1.0) => PrintFormat::Hexadecimal,
             Some(2.0) => PrintFormat::Values,
             Some(_) => PrintFormat::Full,
@@ -151,8 +152,20 @@ impl Evaluator<'_> {
             Some(_) => Sort::Surfaces,
             None => return,
         };
+        if self.lacks_list(major) {
+            return;
+        }
         let items = self.listed(major.arguments.get(1..).unwrap_or_default());
         self.punch_items(major, &items, sort);
+    }
+
+    /// Whether nothing follows the number, which APT III does not take; what APT4 does with it is not known.
+    fn lacks_list(&mut self, major: Major<'_>) -> bool {
+        let lacks = major.arguments.len() == 1 && !self.is_apt4();
+        if lacks {
+            self.wrong_operand(major, Expected::Name, Found::Nothing, LISTING_FORM, major.range);
+        }
+        lacks
     }
 
     /// The cards of the items with a value of this sort, and the END card.

@@ -87,13 +87,15 @@ impl Evaluator<'_> {
             [] if optional && !major.slash => {}
             [Argument::Word(word)] if words.contains(&word.word.spelling) => {}
             [] => self.wrong_operand(major, Expected::Word, Found::Nothing, COUNT, major.range),
-            [argument, ..] => {
+            [_] if self.refuse_undefined_option(major) => {}
+            [argument] => {
                 let found = match argument {
                     Argument::Word(word) => Found::Word(word.word.spelling.into()),
                     _ => Found::Scalar,
                 };
                 self.wrong_operand(major, Expected::OnOrOff, found, WORD, argument.range());
             }
+            several => self.wrong_count(major, several.len(), "1 word", COUNT),
         }
     }
 
@@ -134,6 +136,13 @@ impl Evaluator<'_> {
                 self.report(FindingKind::RestartNotAvailable { number: 3 }, major.range);
             }
             [Operand::Scalar(3.0)] => self.wrong_count(major, 1, "3 and a record number", COUNT),
+            [Operand::Scalar(value)] => {
+                let (statement, number) = (major.name(), Some(POINTS_ONLY));
+                self.report(FindingKind::OperandRange { statement, value: *value, number }, major.range);
+            }
+            [Operand::Scalar(_), ..] => {
+                self.wrong_count(major, items.len(), "1, 2, or 3 and a record number", POINTS_ONLY);
+            }
             _ => {
                 let found = items.first().map_or(Found::Nothing, Item::found);
                 self.wrong_operand(major, Expected::Integer, found, POINTS_ONLY, major.range);
@@ -150,7 +159,12 @@ impl Evaluator<'_> {
         let words: Option<Vec<&str>> = major.arguments.iter().map(spelling).collect();
         let fits = matches!(words.as_deref(), Some(["ON" | "OFF"] | ["SEC1" | "SEC2", "ON" | "OFF"]));
         if !fits {
-            self.wrong_operand(major, Expected::OnOrOff, Found::Nothing, DEBUG_FORM, major.range);
+            let found = match major.arguments.last() {
+                None => Found::Nothing,
+                Some(Argument::Word(word)) => Found::Word(word.word.spelling.into()),
+                Some(_) => Found::Scalar,
+            };
+            self.wrong_operand(major, Expected::OnOrOff, found, DEBUG_FORM, major.range);
         }
     }
 

@@ -424,6 +424,12 @@ impl Parser<'_> {
         if slash && class == WordClass::PostprocessorBare && self.dialect.bare_words_strict {
             return self.fail(SyntaxErrorKind::TakesNoParameters(word.word.spelling.into()));
         }
+        if slash && matches!(word.word.spelling, "LOOPST" | "LOOPND" | "TERMAC") {
+            // They begin and end their block all the same.
+            let kind = SyntaxErrorKind::TakesNoParameters(word.word.spelling.into());
+            let range = self.element(0).map(|element| element.range).unwrap_or_default();
+            self.errors.push(SyntaxError::new(kind, range));
+        }
         let empty = match word.word.spelling {
             "INDIRV" | "INDIRP" | "SRFVCT" => EmptyPositions::Always,
             _ => EmptyPositions::AfterCanon,
