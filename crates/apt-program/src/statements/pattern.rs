@@ -122,7 +122,8 @@ impl Route {
         let order = output_order(pattern, inverse, zigzag);
         let count = order.len();
         let mut route = Route { visited: vec![true; count], lift: vec![None; count], order };
-        let columns = (zigzag && constant).then_some(pattern.column.max(1));
+        // With ZIGZAG the points of a range lie in one column (language reference 6.2).
+        let columns = zigzag.then_some(pattern.column.max(1));
         route.read_operations(&mut reader, constant, columns)?;
         Ok(route)
     }
