@@ -128,6 +128,57 @@ fn circles_as_drive_surfaces_are_arcs() {
     assert_eq!(errors.len(), 1);
 }
 
+/// The end of an arc where the check surface does not name it: a line that the circle crosses, or touches.
+#[test]
+fn arcs_end_where_their_circle_meets_the_check_surface() {
+    let arc = |check: &str| {
+        format!("GOTO/10,0,2\nINDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/0,0,2,10),{check}\nGOTO/50,0,2\n")
+    };
+    for (check, end, steps) in [
+        ("ON,(LINE/0,0,2,0,3,2)", [0.0, 10.0, 2.0], 18),
+        ("ON,(LINE/0,0,2,0,-3,2)", [0.0, 10.0, 2.0], 18),
+        ("ON,2,INTOF,(LINE/0,0,2,0,3,2)", [0.0, -10.0, 2.0], 54),
+        ("ON,(LINE/-6,20,2,-6,30,2)", [-6.0, 8.0, 2.0], 26),
+        ("ON,2,INTOF,(LINE/-6,20,2,-6,30,2)", [-6.0, -8.0, 2.0], 47),
+        ("TANTO,(LINE/0,10,2,-10,10,2)", [0.0, 10.0, 2.0], 18),
+        ("TANTO,(LINE/-10,30,2,-10,20,2)", [-10.0, 0.0, 2.0], 36),
+    ] {
+        let (records, errors) = read_text(&arc(check));
+        assert_eq!(errors, vec![], "{check}");
+        let ClKind::Motion { points, .. } = &records[2].kind else { panic!("{records:?}") };
+        assert_eq!(points.len(), steps, "{check}");
+        let last = points.last().unwrap().position;
+        assert!((last - Vec3::from(end)).norm() < 1e-9, "{check}: {last:?}");
+    }
+    for missed in ["ON,(LINE/20,0,2,20,3,2)", "TANTO,(LINE/0,12,2,-10,12,2)"] {
+        let (_, errors) = read_text(&arc(missed));
+        assert!(errors.len() == 1 && matches!(errors[0].kind, ReadErrorKind::OffCircle { .. }), "{errors:?}");
+    }
+}
+
+/// NX tells how often a helix goes round.
+#[test]
+fn helices_go_round_as_often_as_they_say() {
+    let helix = |times: &str, end: &str| {
+        format!("GOTO/-1,0,0\nCIRCLE/0,0,-2.475,0,0,-1,1,.002,.5,1,0{times}\nGOTO/{end}\n")
+    };
+    for (times, end, steps) in [
+        (",TIMES,2", "-1,0,-2.475", 144),
+        (",TIMES,1", "-1,0,-2.475", 72),
+        ("", "-1,0,-2.475", 72),
+        (",TIMES,2", "0,1,-2.475", 90),
+        (",TIMES,1", "0,1,-2.475", 18),
+    ] {
+        let (records, errors) = read_text(&helix(times, end));
+        assert_eq!(errors, vec![], "{times}");
+        let ClKind::Motion { points, .. } = &records[2].kind else { panic!("{records:?}") };
+        assert_eq!(points.len(), steps, "{times} {end}");
+    }
+    for wrong in [",TIMES", ",TIMES,0", ",TIMES,1.5", ",TIMES,CLW"] {
+        assert_eq!(read_text(&helix(wrong, "-1,0,-2")).1.len(), 1, "{wrong}");
+    }
+}
+
 /// The circle of a drive surface and a tool beside it: the points keep their distance from its axis.
 #[test]
 fn points_about_the_axis_of_a_circle_are_its_own() {

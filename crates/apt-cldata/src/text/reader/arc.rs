@@ -1,5 +1,7 @@
 //! Circles in CL text: what states them, and the points that belong to them.
 
+use std::f64::consts::TAU;
+
 use apt_geometry::Vec3;
 use smol_str::SmolStr;
 
@@ -23,6 +25,8 @@ pub(super) struct PendingArc {
     start: Option<Vec3>,
     /// Signed sweep, where the file says it.
     sweep: Option<f64>,
+    /// How many full turns it makes before the one that ends it.
+    turns_before: f64,
     pub(super) points: Vec<ClPoint>,
     isn: u32,
     line: u32,
@@ -91,13 +95,20 @@ impl Reader {
 
     pub(super) fn circle(&mut self, word: &SmolStr, arguments: &[ClWord]) {
         let Some(circle) = self.circle_of(word, arguments) else { return };
-        let mut sweep = None;
+        let (mut sweep, mut turns_before) = (None, 0.0);
         let mut rest = arguments.get(CIRCLE_ARGUMENTS..).unwrap_or_default().iter();
         while let Some(argument) = rest.next() {
             match argument {
                 ClWord::Word(name) if name == "ANGLE" => match rest.next() {
                     Some(ClWord::Number(degrees)) => sweep = Some(degrees.to_radians()),
                     _ => return self.error(ReadErrorKind::NotNumber { word: word.clone(), position: 9 }),
+                },
+                // How often it goes round: the last time it comes to its end.
+                ClWord::Word(name) if name == "TIMES" => match rest.next() {
+                    Some(ClWord::Number(times)) if *times >= 1.0 && times.fract() == 0.0 => {
+                        turns_before = *times - 1.0;
+                    }
+                    _ => return self.error(ReadErrorKind::NotRead { word: name.clone() }),
                 },
                 ClWord::Word(name) => self.error(ReadErrorKind::NotRead { word: name.clone() }),
                 // Tolerances and cutter of the long form.
@@ -109,13 +120,13 @@ impl Reader {
                 }
             }
         }
-        self.begin_arc(circle, sweep);
+        self.begin_arc(circle, sweep, turns_before);
     }
 
-    fn begin_arc(&mut self, circle: SpaceCircle, sweep: Option<f64>) {
+    fn begin_arc(&mut self, circle: SpaceCircle, sweep: Option<f64>, turns_before: f64) {
         let (start, points) = (self.position, Vec::new());
         let (isn, line) = (self.isn, self.line);
-        self.arc = Some(PendingArc { circle, away: 0.0, start, sweep, points, isn, line });
+        self.arc = Some(PendingArc { circle, away: 0.0, start, sweep, turns_before, points, isn, line });
     }
 
     /// `ARCMOV/CLW|CCLW,x,y,z[,a]`: from the present position to the point along the circle of ARCDAT, through `a` degrees
@@ -162,7 +173,11 @@ impl Reader {
     /// An arc to a point; clockwise as seen against the axis.
     fn turn(&mut self, circle: SpaceCircle, clockwise: bool, degrees: Option<f64>, end: Vec3) {
         let axis = if clockwise { -circle.axis } else { circle.axis };
-        self.begin_arc(SpaceCircle { axis, ..circle }, degrees.map(|degrees| degrees.abs().to_radians()));
+        self.begin_arc(
+            SpaceCircle { axis, ..circle },
+            degrees.map(|degrees| degrees.abs().to_radians()),
+            0.0,
+        );
         let point = self.at(end, false);
         self.position = Some(end);
         self.goto(point, true);
@@ -195,7 +210,10 @@ impl Reader {
             Direction::Towards(place) => place - start,
         };
         let counterclockwise = circle.axis.dot(&(start - circle.center).cross(&along)) > 0.0;
-        self.turn(circle, !counterclockwise, None, driven.end);
+        let axis = if counterclockwise { circle.axis } else { -circle.axis };
+        let circle = SpaceCircle { axis, ..circle };
+        let end = driven.end(&circle, &start, slack(&circle, self.tolerance.width()));
+        self.turn(circle, false, None, end);
     }
 
     /// Turns a pending circle and its points into records.
@@ -209,8 +227,9 @@ impl Reader {
             match (arc.start, off) {
                 (Some(start), Some(off)) if off.abs() <= slack && arc.away == 0.0 => {
                     let same = arc.circle.radius * SAME_POINT_FRACTION;
-                    let sweep =
-                        arc.sweep.unwrap_or_else(|| arc.circle.positive_sweep(&start, &last.position, same));
+                    let sweep = arc.sweep.unwrap_or_else(|| {
+                        arc.circle.positive_sweep(&start, &last.position, same) + arc.turns_before * TAU
+                    });
                     let positions = arc.circle.sample(&start, &last.position, sweep);
                     arc.points = positions.into_iter().map(|position| ClPoint { position, ..last }).collect();
                 }
