@@ -225,7 +225,13 @@ fn tangent(centers: [&Vec3; 2], radii: [f64; 2], sides: [Modifier; 2]) -> Result
         return Err(Impossible::Coincident { distance }.into());
     }
     if reach.abs() > distance + coincidence(size) {
-        return Err(Impossible::InsideCircle { distance, radius: reach.abs() }.into());
+        let reach = reach.abs();
+        let is_point = radii[0] == 0.0;
+        return Err(match is_point {
+            true => Impossible::InsideCircle { distance, radius: reach },
+            false => Impossible::CirclesTooNear { distance, needed: reach },
+        }
+        .into());
     }
     let along = between / distance;
     let cosine = (reach / distance).clamp(-1.0, 1.0);

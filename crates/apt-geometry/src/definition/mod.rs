@@ -149,6 +149,7 @@ pub enum Impossible {
     NotPositive { value: f64 },
     NoIntersection { gap: f64 },
     InsideCircle { distance: f64, radius: f64 },
+    CirclesTooNear { distance: f64, needed: f64 },
     RadiusTooSmall { radius: f64, least: f64 },
     RadiusTooLarge { radius: f64, greatest: f64 },
     Singular,

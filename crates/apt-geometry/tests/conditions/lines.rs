@@ -121,7 +121,7 @@ proptest! {
         Figure::flat(GeometryKind::Line, setting, Turns::Flat, parts).condition((setting.size / (apart - reach)).abs().max(setting.size / apart)).hold(
             travel,
             |reason| match reason {
-                Impossible::InsideCircle { distance, radius } => distance < radius,
+                Impossible::CirclesTooNear { distance, needed } => distance < needed,
                 Impossible::Coincident { distance } => *distance <= TOUCHING,
                 _ => false,
             },

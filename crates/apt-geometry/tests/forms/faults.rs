@@ -30,7 +30,7 @@ const ERRORS: &[(&str, u16, &str)] = &[
     ("POINT/PA,0", 154, "position: Some(1)"),
     ("LINE/1,2,1,2", 1005, "Coincident"),
     ("LINE/(1,0),LEFT,TANTO,C2", 1005, "InsideCircle"),
-    ("LINE/LEFT,TANTO,CC,RIGHT,TANTO,C5", 1005, "InsideCircle"),
+    ("LINE/LEFT,TANTO,CC,RIGHT,TANTO,C5", 1005, "CirclesTooNear"),
     ("LINE/INTOF,PLX,PLY", 1005, "Parallel"),
     ("LINE/INTOF,PLX,PLX", 1005, "Parallel"),
     ("LINE/PARLEL,LX,XLARGE,1", 1005, "Undecided"),

@@ -248,6 +248,11 @@ fn impossible(type_word: &str, reason: &Impossible) -> Text {
             number(*distance),
             number(*radius)
         ),
+        Impossible::CirclesTooNear { distance, needed } => format!(
+            "the circles have no such tangent, for their centres are {} apart, and it takes at least {}",
+            number(*distance),
+            number(*needed)
+        ),
         Impossible::RadiusTooSmall { radius, least } => {
             format!("the radius {} is too small, it must be at least {}", number(*radius), number(*least))
         }
@@ -262,5 +267,20 @@ fn impossible(type_word: &str, reason: &Impossible) -> Text {
         }
         Impossible::AngleOutOfRange { degrees } => format!("the angle {}° is out of range", number(*degrees)),
     };
-    say("APT0304", format!("this {type_word} does not exist: {why}"))
+    say("APT0304", format!("this {type_word} does not exist: {why}")).maybe(other_word(reason))
+}
+
+/// Where a word does not decide: words that may, which are those of another axis.
+fn other_word(reason: &Impossible) -> Option<String> {
+    let Impossible::Undecided { word } = reason else { return None };
+    let word = word.word();
+    let other = |of_x: &'static str, of_y: &'static str| if word.contains('X') { of_y } else { of_x };
+    let others = match word {
+        _ if word.ends_with("LARGE") || word.ends_with("SMALL") => {
+            other("XLARGE or XSMALL", "YLARGE or YSMALL")
+        }
+        _ if word.starts_with("POS") || word.starts_with("NEG") => other("POSX or NEGX", "POSY or NEGY"),
+        _ => return None,
+    };
+    Some(format!("choose a word of another axis, as {others}"))
 }
