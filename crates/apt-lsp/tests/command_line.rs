@@ -363,6 +363,13 @@ fn tapes_are_punched_and_pictures_are_images() {
         assert!(!folder.0.join("odd.tape").exists(), "{code}");
     }
     // A character that the control lacks, too, is told once, as what keeps the tape from being punched.
+    // In EIA the % is the end of the record, which no text can hold.
+    let ran = |text: &str, code: &str| {
+        folder.write("odd.apt", GOOD.replace("FINI", &format!("{text}\nFINI")));
+        folder.run(&["post", "odd.apt", "--machine", "fanuc-mill3", "--punch", code, "-o", "odd.tape"])
+    };
+    assert!(ran("PPRINT 50% FEED", "eia").stderr.contains("error[APT0898]: '%' is not in the EIA"));
+    assert!(!ran("PPRINT 50% FEED", "iso").stderr.contains("APT0898"));
     for (text, told) in [("PPRINT BORE Ø 5", vec!["'Ø'"]), ("PPRINT Ø ØK?", vec!["'Ø'", "'?'"])] {
         folder.write("odd.apt", GOOD.replace("FINI", &format!("{text}\nFINI")));
         let plain = folder.run(&["post", "odd.apt", "--machine", "fanuc-mill3"]);

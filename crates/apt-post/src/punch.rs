@@ -140,14 +140,11 @@ pub enum DecodeError {
 /// The first character that the code lacks.
 pub fn punch(text: &str, code: Code) -> Result<Vec<u8>, PunchError> {
     let mut image = vec![BLANK; LEADER_ROWS];
-    let mut line = 0;
-    for character in text.chars() {
-        if character == '\r' {
-            continue;
+    for (line, block) in text.split_inclusive('\n').enumerate() {
+        for character in block.chars().filter(|character| *character != '\r') {
+            let row = row_in(block.trim_end(), character, code).ok_or(PunchError { line, character })?;
+            image.push(row);
         }
-        let row = row_of(character, code).ok_or(PunchError { line, character })?;
-        image.push(row);
-        line += usize::from(character == '\n');
     }
     image.resize(image.len() + LEADER_ROWS, BLANK);
     Ok(image)
@@ -184,7 +181,7 @@ fn lacking(block: &Block, replaced: &[char], code: Code) -> Vec<char> {
     for character in replaced.iter().copied().chain(block.text.chars()) {
         if character == REPLACEMENT && replacements > 0 {
             replacements -= 1;
-        } else if row_of(character, code).is_none() && !lacking.contains(&character) {
+        } else if row_in(&block.text, character, code).is_none() && !lacking.contains(&character) {
             lacking.push(character);
         }
     }
@@ -240,6 +237,13 @@ pub fn row_picture(byte: u8) -> String {
 /// The row of a character. Lower case is punched as upper case.
 fn row_of(character: char, code: Code) -> Option<u8> {
     encode(character.to_ascii_uppercase(), code)
+}
+
+/// The row of a character of a block. The `%` of EIA is the end of the record and stands alone; in a text the control would
+/// stop reading there.
+fn row_in(block: &str, character: char, code: Code) -> Option<u8> {
+    let row = row_of(character, code)?;
+    (code != Code::Eia || row != EIA_END_OF_RECORD || block.len() == character.len_utf8()).then_some(row)
 }
 
 fn encode(character: char, code: Code) -> Option<u8> {
@@ -301,6 +305,8 @@ mod tests {
     #[test]
     fn lacking_characters_and_damage_are_errors() {
         assert_eq!(punch("N1\n(A;B)", Code::Eia), Err(PunchError { line: 1, character: ';' }));
+        assert_eq!(punch("%\nN1\n(50% A)", Code::Eia), Err(PunchError { line: 2, character: '%' }));
+        assert!(punch("%\nN1\n(50% A)\n%\n", Code::Iso).is_ok() && punch("%\nN1\n%\n", Code::Eia).is_ok());
         assert_eq!(decode(&[0x03], Code::Eia), Err(DecodeError::Parity { row: 0, byte: 0x03 }));
         assert_eq!(decode(&[0xb3], Code::Iso), Err(DecodeError::Parity { row: 0, byte: 0xb3 }));
         assert_eq!(decode(&[0x00, 0xf8], Code::Eia), Err(DecodeError::Unknown { row: 1, byte: 0xf8 }));
@@ -309,7 +315,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn punched_text_reads_back(text in "[0-9A-Z+\\-.,/%() \n]{0,80}", eia in any::<bool>()) {
+        fn punched_text_reads_back(text in "(%\n)?[0-9A-Z+\\-.,/() \n]{0,80}(\n%\n)?", eia in any::<bool>()) {
             let code = if eia { Code::Eia } else { Code::Iso };
             let image = punch(&text, code).unwrap();
             prop_assert_eq!(image.len(), text.len() + 2 * LEADER_ROWS);

@@ -183,7 +183,7 @@ fn hint(kind: &Kind) -> Option<&'static str> {
         Kind::RapidUnused => "RAPID holds for the next motion only",
         Kind::Character { .. } => "it is written as a question mark; use the characters of ASCII",
         Kind::NotInTapeCode { .. } => {
-            "write it with letters, digits, blanks and + - . , / %, or leave out --punch: the tape is then text"
+            "write it with letters, digits, blanks and + - . , /, or leave out --punch: the tape is then text"
         }
         Kind::CuttingBeforeTool { .. } => "load the tool before the first cut",
         Kind::OffsetWithoutTool { .. } => "give LOADTL before",
