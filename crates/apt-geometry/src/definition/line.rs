@@ -227,11 +227,12 @@ fn tangent(centers: [&Vec3; 2], radii: [f64; 2], sides: [Modifier; 2]) -> Result
     if reach.abs() > distance + coincidence(size) {
         let reach = reach.abs();
         let is_point = radii[0] == 0.0;
-        return Err(match is_point {
-            true => Impossible::InsideCircle { distance, radius: reach },
-            false => Impossible::CirclesTooNear { distance, needed: reach },
-        }
-        .into());
+        let reason = if is_point {
+            Impossible::InsideCircle { distance, radius: reach }
+        } else {
+            Impossible::CirclesTooNear { distance, needed: reach }
+        };
+        return Err(reason.into());
     }
     let along = between / distance;
     let cosine = (reach / distance).clamp(-1.0, 1.0);

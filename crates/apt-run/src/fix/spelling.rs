@@ -53,13 +53,13 @@ impl Here<'_> {
         if name.chars().count() < SHORTEST_MISSPELT_WORD {
             return names.to_vec();
         }
+        let Some(place) = self.place(name) else { return names.to_vec() };
         let dialect = self.tree.dialect();
         let fits = |word: &&Word| {
             word.is_in(dialect.name)
-                && match self.place(name) {
-                    Some(Place::Type) => word.class == WordClass::GeometricType,
-                    Some(Place::OperandOf(head)) => word.used_in.contains(&head),
-                    None => false,
+                && match place {
+                    Place::Type => word.class == WordClass::GeometricType,
+                    Place::OperandOf(head) => word.used_in.contains(&head),
                 }
         };
         let words = vocabulary::words().iter().filter(fits).map(|word| word.spelling);
