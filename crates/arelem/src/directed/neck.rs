@@ -37,14 +37,15 @@ pub(super) struct Neck<'a> {
 }
 
 impl<'a> Neck<'a> {
-    /// The neck; `None` if the tool keeps to no side of that surface or touches it at one place alone, or if the way onward is square to the
-    /// other one.
+    /// The neck; `None` if the tool keeps to no side of that surface or touches it at one place alone, if it has no width, for which nothing is narrow, or if
+    /// the way onward is square to the other one.
     pub(super) fn new(
         prepared: &'a Prepared<'a>,
         [role, other]: [&'a Working; 2],
         corner: TurnsBack,
     ) -> Option<Self> {
-        if role.gauge.on || !matches!(role.shape, Shape::General | Shape::Concave) {
+        let is_wide = STEP * prepared.tool.radius() > ROUNDING * prepared.size;
+        if role.gauge.on || !is_wide || !matches!(role.shape, Shape::General | Shape::Concave) {
             return None;
         }
         let posture = prepared.attitude.posture(&corner.at).ok()?;

@@ -1,6 +1,9 @@
 //! Corners that turn the path sharply, in all bands and from all distances: one vertex does for a corner.
 
-use super::*;
+use super::{
+    refused::{Found, turns_sharply},
+    *,
+};
 use crate::error::RoleName;
 
 /// Of the tool.
@@ -232,4 +235,36 @@ fn a_tool_goes_back_from_a_neck_whose_walls_are_all_but_one_line() {
         let end = sequence.points.last().expect("a vertex").tip;
         assert!(end.x > 0.0, "{long} {wide}: {end}");
     }
+}
+
+/// A line touches a hollow sphere with its end and then with its top. Without a width it goes through no neck there: it went back the way that it came.
+#[test]
+fn a_line_that_touches_with_both_ends_is_in_no_neck() {
+    let motion = Found {
+        cutter: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.230688854157487],
+        axis: v(-0.44493995633705036, 0.1938010330624687, 0.8743395192021824),
+        from: v(1.151351006060364, -0.10722283346716854, 0.31524096845428706),
+        band: [2e-5, 3e-5],
+        thickness: 0.0,
+        drive_side: DriveSide::Right,
+        forward: v(-0.7526964522240472, 0.4768935115888702, -0.4538949541620491),
+        part: (
+            Relation::To,
+            sphere(0.23589032805829246, -0.05345688782006158, 2.156428965912056, 2.790044368293636),
+        ),
+        drive: (
+            Relation::To,
+            cylinder(
+                v(1.525132237371737, 3.7292783577522792, 3.7088800373379027),
+                Vec3::z(),
+                4.323950331748025,
+            ),
+        ),
+        first: (
+            Relation::To,
+            plane(-0.7526964522240472, 0.4768935115888705, -0.45389495416204895, -1.133049327460995),
+        ),
+        stop: (Relation::Past, plane(0.8447248292631784, -0.5352008621314936, 0.0, 0.8556519259081886)),
+    };
+    turns_sharply(&motion);
 }
