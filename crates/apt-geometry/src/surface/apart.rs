@@ -26,6 +26,10 @@ pub struct HalfSpace {
 /// A half-space that holds a convex body, from the direction out of the body at a place beside it, and a normal of the surface there.
 pub type Beside<'a> = dyn Fn(&Vec3, &Vec3) -> HalfSpace + 'a;
 
+/// How far a point is beyond a half-space at the beginning of a body's way and one at the end of it, with their outward unit normals: what is beyond both by a
+/// distance is as far from the body, wherever that is on its way.
+pub type AtEnds<'a> = dyn Fn(&Vec3) -> [(f64, Vec3); 2] + 'a;
+
 /// A convex body.
 #[derive(Clone, Copy)]
 pub struct Body<'a> {
@@ -35,12 +39,14 @@ pub struct Body<'a> {
     pub within: Option<HalfSpace>,
     /// Those that hold it and face parts of a surface: about a sharp edge of the body the distances of points bend without bound.
     pub beside: Option<&'a Beside<'a>>,
+    /// Those of one that turns on its way, in place of the distances of points: the convex hull of the way is much wider than that.
+    pub at_ends: Option<&'a AtEnds<'a>>,
 }
 
 impl<'a> Body<'a> {
     /// One of which only the distances of points are known.
     pub fn new(away: &'a Away<'a>) -> Self {
-        Self { away, within: None, beside: None }
+        Self { away, within: None, beside: None, at_ends: None }
     }
 }
 
@@ -60,6 +66,7 @@ pub(super) struct Apart<'a> {
     away: &'a Away<'a>,
     within: Option<HalfSpace>,
     beside: Option<&'a Beside<'a>>,
+    at_ends: Option<&'a AtEnds<'a>>,
     /// Less is none.
     wanted: f64,
     /// What the parts looked at so far keep.
@@ -71,11 +78,13 @@ pub(super) struct Apart<'a> {
 }
 
 impl<'a> Apart<'a> {
-    pub(super) fn new(Body { away, within, beside }: Body<'a>, wanted: f64, limit: Limit<'a>) -> Self {
+    pub(super) fn new(body: Body<'a>, wanted: f64, limit: Limit<'a>) -> Self {
+        let Body { away, within, beside, at_ends } = body;
         Self {
             away,
             within,
             beside,
+            at_ends,
             wanted,
             least: limit.enough.max(wanted),
             looks: 0,
@@ -164,12 +173,24 @@ impl<'a> Apart<'a> {
     /// How far the distance is above its tangent at a place, at that end of a way to both sides of it which the tangent says is nearer.
     pub(super) fn above_tangent(&self, place: &Vec3, (distance, outward): (f64, Vec3), way: &Vec3) -> f64 {
         let rise = outward.dot(way);
-        (self.away)(&(place - way * rise.signum())).0 - (distance - rise.abs())
+        let nearer = place - way * rise.signum();
+        let there = match self.at_ends {
+            Some(at_ends) => {
+                at_ends(&nearer).map(|(distance, _)| distance).into_iter().fold(f64::INFINITY, f64::min)
+            }
+            None => (self.away)(&nearer).0,
+        };
+        there - (distance - rise.abs())
     }
 
     /// What a part of a surface keeps, and how far its middle is, with the direction to it.
     fn part(&mut self, part: &Extent) -> (f64, (f64, Vec3)) {
         self.look();
+        if let Some(at_ends) = self.at_ends {
+            let [first, last] = at_ends(part.center());
+            let least = [first, last].map(|(distance, outward)| distance - part.reach_along(&outward));
+            return (least[0].min(least[1]), if first.0 <= last.0 { first } else { last });
+        }
         let (distance, outward) = (self.away)(part.center());
         let by_point = distance - part.reach_along(&outward);
         let is_wanted = |least: &f64| *least >= self.wanted;

@@ -144,7 +144,7 @@ proptest! {
         which in 0usize..COUNT, near in prop::array::uniform3(-1.0..6.0f64), off in 0.05..2.0f64,
         way in prop::array::uniform3(-2.0..2.0f64), radius in 0.01..0.5f64, wanted in 0.001..0.5f64,
         asides in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 60), is_within in any::<bool>(),
-        is_beside in any::<bool>(),
+        is_beside in any::<bool>(), is_turning in any::<bool>(),
     ) {
         let surface = made(which);
         let foot = surface.foot(&Vec3::from(near));
@@ -163,7 +163,10 @@ proptest! {
             HalfSpace { outward, level: reach(&outward) }
         };
         let beside = is_beside.then_some(&facing as &Beside<'_>);
-        let body = Body { away: &away, within, beside };
+        // Its own tangent planes are those of a body that turns by nothing.
+        let still = |p: &Vec3| [away(p); 2];
+        let at_ends = is_turning.then_some(&still as &AtEnds<'_>);
+        let body = Body { away: &away, within, beside, at_ends };
         let Some(kept) = surface.keeps_off_body(body, wanted, Limit { looks: 600, enough: f64::INFINITY, patience: Patience::default() }) else { return Ok(()) };
         prop_assert!(kept >= wanted);
         for (k, aside) in asides.iter().enumerate() {

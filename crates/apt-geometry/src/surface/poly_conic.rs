@@ -21,7 +21,7 @@ use self::{
 };
 use super::{
     Chart, Foot, Place, Surface,
-    apart::{Apart, Beside, Body, HalfSpace, Limit},
+    apart::{Apart, AtEnds, Beside, Body, HalfSpace, Limit},
     descent::{Descent, MAX_STEPS, Slopes},
     part::{Count, Part, Rectangle, Summary},
     perpendicular,
@@ -405,9 +405,16 @@ impl PolyConicSheet {
             }
         });
         let beside = beside.as_ref().map(|beside| beside as &Beside<'_>);
+        let at_ends = body.at_ends.map(|at_ends| {
+            move |p: &Vec3| {
+                at_ends(&self.linear.tr_mul(&(p - self.origin)))
+                    .map(|(distance, outward)| (distance, self.linear * outward))
+            }
+        });
+        let at_ends = at_ends.as_ref().map(|at_ends| at_ends as &AtEnds<'_>);
         let stock = self.form.thickness.abs();
         let limit = Limit { enough: limit.enough + stock, ..limit };
-        let mut asked = Apart::new(Body { away: &own, within, beside }, wanted + stock, limit);
+        let mut asked = Apart::new(Body { away: &own, within, beside, at_ends }, wanted + stock, limit);
         let look = |asked: &mut Apart<'_>, node: usize| {
             let cell = self.cells.get(node).filter(|cell| cell.radius >= 0.0)?;
             Some((asked.ball(&cell.center, cell.radius), node))

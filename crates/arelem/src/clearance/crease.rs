@@ -9,6 +9,9 @@ use apt_geometry::{
     surface::{Away, Body, Chart, Crease, HalfSpace, Limit, Surface},
 };
 
+mod turning;
+
+pub(super) use self::turning::clears_turning;
 use super::{Contact, Memory, Tool, search::MISSED};
 
 /// Bound of the steps along a line.
@@ -277,7 +280,8 @@ pub(super) fn clears(
     let distance = |place: &Vec3| nearest_on_way(&body, &(place - start), &way, close);
     let tips = [&start, &(start + way)];
     let beside = |out: &Vec3, square: &Vec3| facing(tool, tips, &across_edge(tool, out, square, &-normal));
-    let body = Body { away: &distance, within: Some(facing(tool, tips, &-normal)), beside: Some(&beside) };
+    let within = Some(facing(tool, tips, &-normal));
+    let body = Body { within, beside: Some(&beside), ..Body::new(&distance) };
     let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: tool.patience };
     surface.keeps_off_body(body, wanted, limit).is_some()
 }
@@ -304,95 +308,6 @@ fn across_edge(tool: &Tool, out: &Vec3, normal: &Vec3, outward: &Vec3) -> Vec3 {
     let along_edge = if square > 0.0 { around * (around.dot(normal) / square) } else { Vec3::zeros() };
     let across = (normal - along_edge).try_normalize(0.0).unwrap_or(*outward);
     if across.dot(outward) < 0.0 { -across } else { across }
-}
-
-/// The same for a tool that turns evenly from one axis to another on its way. Every point of it goes on a chord from its first place to its
-/// last one, but for how far it swings out: at most an eighth of its acceleration, the square of the angle by its arm. All chords lie
-/// in the convex hull of the first and the last position.
-pub(super) fn clears_turning(
-    surface: &Surface,
-    [first, last]: [(&Tool, &Vec3); 2],
-    away: &Vec3,
-    level: f64,
-) -> bool {
-    let out = away * (-level).max(0.0);
-    let angle = first.0.axis.cross(&last.0.axis).norm().atan2(first.0.axis.dot(&last.0.axis));
-    let reach = first.0.reach();
-    let hull = Hull {
-        tool: first.0,
-        axes: [first.0.axis, last.0.axis],
-        tips: [first.1 + out, last.1 + out],
-        close: CLOSE * (reach + (last.1 - first.1).norm()),
-    };
-    let wanted = level.max(least_off(first.0)) + angle * angle * reach / 8.0;
-    let distance = |place: &Vec3| hull.away(place);
-    let body = Body::new(&distance);
-    let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: first.0.patience };
-    surface.keeps_off_body(body, wanted, limit).is_some()
-}
-
-/// The convex hull of two positions of a tool.
-struct Hull<'a> {
-    tool: &'a Tool<'a>,
-    axes: [Vec3; 2],
-    tips: [Vec3; 2],
-    /// Differences of distances below this are none.
-    close: f64,
-}
-
-impl Hull<'_> {
-    /// A bound from below of the distance of a place, and the direction in which it grows: with any direction the farther of the tangent planes of
-    /// both positions bounds the distance of their hull. The direction is that out of a position between them, best of one for which the
-    /// planes are one.
-    fn away(&self, place: &Vec3) -> (f64, Vec3) {
-        let way = self.tips[1] - self.tips[0];
-        let square = way.norm_squared();
-        let mut share =
-            if square > 0.0 { ((place - self.tips[0]).dot(&way) / square).clamp(0.0, 1.0) } else { 0.5 };
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut best = (f64::NEG_INFINITY, Vec3::zeros());
-        for _ in 0..MOST_POSITIONS {
-            let out = self.out_of(share, place);
-            let [start, end] = [0, 1].map(|k| self.beyond(k, &out, place));
-            if start.min(end) > best.0 {
-                best = (start.min(end), out);
-            }
-            if (start - end).abs() <= self.close + ROUGHLY * best.0.max(0.0) {
-                break;
-            }
-            // The place lies ahead where the last position reaches farther.
-            if end < start {
-                low = share;
-            } else {
-                high = share;
-            }
-            if high <= low {
-                break;
-            }
-            share = 0.5 * (low + high);
-        }
-        best
-    }
-
-    /// How far a place is beyond the tangent plane of one of the positions across a unit direction.
-    fn beyond(&self, k: usize, out: &Vec3, place: &Vec3) -> f64 {
-        let along = out.dot(&self.axes[k]);
-        let across = (out - self.axes[k] * along).norm();
-        out.dot(&(place - self.tips[k])) - self.tool.profile.support(across, along).0
-    }
-
-    /// The unit direction out of a position between both to a place.
-    fn out_of(&self, share: f64, place: &Vec3) -> Vec3 {
-        let between = |ends: &[Vec3; 2]| ends[0] * (1.0 - share) + ends[1] * share;
-        let axis = between(&self.axes).try_normalize(0.0).unwrap_or(self.axes[0]);
-        let from_tip = place - between(&self.tips);
-        let along = from_tip.dot(&axis);
-        let radial = from_tip - axis * along;
-        let across = radial.norm();
-        let radial = if across > 0.0 { radial / across } else { self.tool.across[0] };
-        let (_, [wide, high]) = self.tool.profile.outward(across, along);
-        (radial * wide + axis * high).try_normalize(0.0).unwrap_or(axis)
-    }
 }
 
 /// How close the least distance of a place from a body on its way is told: to a length, and to a share of what it is above a distance on which
@@ -465,10 +380,7 @@ mod tests {
     use apt_geometry::cutter::Cutter;
 
     use super::*;
-    use crate::{
-        attitude::Sweep,
-        tests::{level, sheets::ruled, v},
-    };
+    use crate::tests::{level, sheets::ruled, v};
 
     /// No place of a sheet is inside of a line that goes through it, which is as deep in the sheet as its end is under it.
     #[test]
@@ -485,39 +397,6 @@ mod tests {
             assert!(is_clear(-depth - 1e-6));
             assert!(!is_clear(-depth + 1e-6));
             assert!(!is_clear(-0.1));
-        }
-    }
-
-    /// A tool that turns is nowhere nearer to a place than the hull of its ends, less how far it swings out; and no distance from the hull is below
-    /// its tangent.
-    #[test]
-    fn a_tool_that_turns_stays_in_the_hull_of_its_ends() {
-        let cutter = Cutter::from_numbers(&[0.5, 0.1, 0.1661, 0.1, 0.0, 10.0, 1.0], 1.0).expect("cutter");
-        let first = Tool::new(cutter, v(0.1, -0.1, 1.0).normalize());
-        let last = first.turned(v(-0.2, 0.1, 1.0).normalize());
-        let tips = [v(0.0, 0.1, -0.2), v(0.4, 0.0, -0.1)];
-        let hull = Hull { tool: &first, axes: [first.axis, last.axis], tips, close: CLOSE };
-        let sweep = Sweep::new(&first, (&tips[0], &first.axis), (&tips[1], &last.axis));
-        let angle = first.axis.dot(&last.axis).acos();
-        let swing = angle * angle * first.reach() / 8.0;
-        let mut share = 0.3;
-        let mut next = || {
-            share = (share * 7.13_f64 + 0.29).fract();
-            2.0 * share - 1.0
-        };
-        for _ in 0..300 {
-            let place = v(next(), next(), next());
-            let (distance, out) = hull.away(&place);
-            let nearest = |place: &Vec3| {
-                let at = |k: u32| {
-                    let (tip, tool) = sweep.at(sweep.length * f64::from(k) / 40.0);
-                    outward(&tool, &(place - tip)).0
-                };
-                (0..=40).map(at).fold(f64::INFINITY, f64::min).max(0.0)
-            };
-            assert!(distance <= nearest(&place) + swing + 1e-12, "{distance} at {place}");
-            let other = place + v(next(), next(), next());
-            assert!(distance + out.dot(&(other - place)) <= nearest(&other) + swing + 1e-12);
         }
     }
 
