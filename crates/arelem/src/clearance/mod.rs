@@ -313,6 +313,11 @@ impl Gauge {
         (!is_over).then(|| crease::outward(&body, &from_end).0 - self.thickness)
     }
 
+    /// How far the chord between two places of the surface is from that at most, where it is known: beside each place of the chord is one of the surface.
+    pub(crate) fn strays_between(&self, places: [&Vec3; 2]) -> Option<f64> {
+        self.surface.strays_between(places)
+    }
+
     /// Whether a tool touches with the edge of its top what is above it: nothing touches the disc there.
     pub(crate) fn touches_from_below(&self, tool: &Tool, tip: &Vec3, contact: &Contact) -> bool {
         let (tool, tip) = self.body(tool, tip);
