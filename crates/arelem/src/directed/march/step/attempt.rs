@@ -3,7 +3,7 @@
 use apt_geometry::{Vec3, surface::Surface};
 
 use super::{
-    CORNER_BANDS, GREATEST_GROWTH, LEAST_VECTOR, Stepper, Trial, Tried, along_arc,
+    CORNER_BANDS, GREATEST_GROWTH, Stepper, Trial, Tried, along_arc,
     sag::{growth, sagging},
 };
 use crate::{
@@ -169,7 +169,7 @@ impl Stepper<'_> {
             || self.turns_back((&chord, &vertex), least.arriving)
             || self.kinks_back(here, &chord)
             || self.changes_hand(&chord, &vertex)
-            || reached <= LEAST_VECTOR * self.prepared.size
+            || reached <= self.least_vector(&vertex.tip)
             || vertex.tangent.dot(&here.tangent) < least.between
         {
             return None;

@@ -1,13 +1,17 @@
 //! The longest vector to the limits of the bands that is proven, from a first guess.
 
+use apt_geometry::Vec3;
+
 use super::{
     AIM, GREATEST_GROWTH, Guess, LEAST_VECTOR, LONG_ENOUGH, NEARLY, Places, Stepper, Trial, Unproven,
     at_corner::Corners,
     overlong::{self, Overlong},
 };
 use crate::{
+    clearance::Tool,
     directed::march::Vertex,
     error::{Iteration, MotionFailure},
+    position,
     role::Bend,
 };
 
@@ -219,7 +223,18 @@ impl Search {
     }
 }
 
+/// Length below which a vector of a tool leads nowhere at a place, on a path that begins where coordinates have a size.
+fn least_vector(tool: &Tool<'_>, size: f64, tip: &Vec3) -> f64 {
+    LEAST_VECTOR * position::size(tool, tip).max(size)
+}
+
 impl Stepper<'_> {
+    /// Length below which a vector leads nowhere at a place: a path may lead far away from where it begins, and who reads it takes two positions
+    /// for one by the size of all of it.
+    pub(super) fn least_vector(&self, tip: &Vec3) -> f64 {
+        least_vector(&self.prepared.tool, self.prepared.size, tip)
+    }
+
     /// The longest vector that is proven, from a first guess.
     pub(super) fn longest(
         &self,
@@ -229,7 +244,7 @@ impl Stepper<'_> {
         guess: &Guess,
     ) -> Result<Trial, MotionFailure> {
         let least = match places {
-            Places::Limits | Places::Off(_) => LEAST_VECTOR * self.prepared.size,
+            Places::Limits | Places::Off(_) => self.least_vector(&here.tip),
             Places::Level | Places::Inward(_) => LEAST_LEVEL * self.bands(),
         };
         let mut search = Search::new(guess, cap, self.prepared.attitude.turns());
@@ -316,5 +331,24 @@ impl Stepper<'_> {
                 tip,
             }),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use apt_geometry::cutter::Cutter;
+
+    use super::*;
+    use crate::{directed::march::step::LEAST_VECTOR, tests::v};
+
+    /// What is a vector where a path begins is none far from there, where coordinates have fewer digits.
+    #[test]
+    fn the_least_vector_grows_with_the_coordinates_of_its_end() {
+        let tool = Tool::new(Cutter::from_numbers(&[0.5], 1.0).expect("a cutter"), Vec3::z());
+        let begin = v(1.0, -0.5, 0.2);
+        let size = position::size(&tool, &begin);
+        assert_eq!(least_vector(&tool, size, &begin), LEAST_VECTOR * size);
+        assert!(least_vector(&tool, size, &v(-100.0, 1.0, 50.0)) >= 100.0 * LEAST_VECTOR);
+        assert_eq!(least_vector(&tool, size, &Vec3::zeros()), LEAST_VECTOR * size);
     }
 }

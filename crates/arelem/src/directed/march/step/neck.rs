@@ -3,7 +3,7 @@
 
 use apt_geometry::Vec3;
 
-use super::{LEAST_VECTOR, Stepper};
+use super::Stepper;
 use crate::{
     clearance::{Contact, Shape},
     directed::{march::Vertex, neck::Neck},
@@ -81,7 +81,7 @@ impl Stepper<'_> {
         let cap = cap.min(self.maximum);
         let is_vector = |from: &Vertex, to: &Vertex| {
             let length = (to.tip - from.tip).norm();
-            length > LEAST_VECTOR * self.prepared.size && length <= cap && self.proven(from, to)
+            length > self.least_vector(&to.tip) && length <= cap && self.proven(from, to)
         };
         let [part, drive] = self.roles();
         let hand = self.hand.or_at(here);

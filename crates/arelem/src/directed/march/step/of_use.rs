@@ -2,7 +2,7 @@
 //! next vector may be too short as well as too long. A few lengths tell whether there is one at all.
 
 use super::{
-    AIM, GREATEST_GROWTH, Guess, LEAST_VECTOR, LONG_ENOUGH, NEARLY, Places, Stepper, Trial,
+    AIM, GREATEST_GROWTH, Guess, LONG_ENOUGH, NEARLY, Places, Stepper, Trial,
     overlong::{Overlong, between},
 };
 use crate::{directed::march::Vertex, error::MotionFailure};
@@ -104,7 +104,7 @@ impl Stepper<'_> {
         guess: &Guess,
         least: f64,
     ) -> Result<Option<Trial>, MotionFailure> {
-        let least = least.max(LEAST_VECTOR * self.prepared.size) * (1.0 + MORE);
+        let least = least.max(self.least_vector(&here.tip)) * (1.0 + MORE);
         let targets = self.targets(here, &guess.bends, Places::Limits);
         let (mut tried, mut bent) = (Tried::nothing(), guess.curvature);
         let mut length = guess.length.min(cap).max(least);

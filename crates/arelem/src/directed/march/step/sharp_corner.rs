@@ -6,7 +6,7 @@
 use apt_geometry::{Vec3, motion::Relation};
 
 use super::{
-    CORNER_BANDS, LEAST_VECTOR, Stepper, Trial,
+    CORNER_BANDS, Stepper, Trial,
     attempt::{LEAST_TURN_COSINE, LeastCosines},
     hand::{Hand, SAME_CONTACT_COSINE},
 };
@@ -93,7 +93,7 @@ impl Stepper<'_> {
             Some(known) => (known.vertex, LOOKED_AHEAD * known.length, known.length * (1.0 + LONGER)),
             None => (*here, CORNER_BANDS * self.bands(), 0.0),
         };
-        let least = least.max(LEAST_VECTOR * self.prepared.size);
+        let least = least.max(self.least_vector(&here.tip));
         let ahead = self.sharp_corner_ahead(&from, reach.min(cap))?;
         let bends = self.bends_of_legs(here, &ahead);
         self.places_in(here, &ahead, &bends)
