@@ -15,7 +15,7 @@ use super::{
     clearance::Reading,
     leaning::keeps_apart,
     patch::{held, jet, place_on},
-    survey::{Accuracy, Part, Sheet, nearest_by, work_of_pass},
+    survey::{Accuracy, Part, Sheet, nearest_by, nearest_to, work_of_pass},
     tool::{Profile, Tool},
     trough::{Rise, is_within_of_line, straight_direction},
 };
@@ -528,26 +528,10 @@ impl Following<'_> {
         None
     }
 
-    /// The part nearest to a place, if one is as near as `close`: that in whose middle the place is most first, so that few others
-    /// can be nearer.
+    /// The part nearest to a place, if one is as near as `close`. None once the tool's patience is over.
     fn nearest_to(&self, place: &Vec3, close: f64) -> Option<usize> {
-        let least = |part: &Part| (part.center - place).norm() - part.radius;
-        let first = nearest_by(self.parts, least)?;
-        let apart = |part: &Part| (part.near(place) - place).norm();
-        let mut best = (first, apart(self.parts.get(first)?));
-        if self.tool.patience.ends_after(work_of_pass(self.parts)) {
-            return None;
-        }
-        for (k, part) in self.parts.iter().enumerate() {
-            if k == first || least(part) > close.min(best.1) {
-                continue;
-            }
-            let distance = apart(part);
-            if distance < best.1 {
-                best = (k, distance);
-            }
-        }
-        Some(best.0)
+        let is_over = self.tool.patience.ends_after(work_of_pass(self.parts));
+        if is_over { None } else { nearest_to(self.parts, place, close) }
     }
 
     /// The contact with the surface that a part belongs to, near the part.

@@ -116,6 +116,8 @@ struct Near {
     parts: Vec<Part>,
     /// The contact found last.
     last: Option<(usize, [f64; 2])>,
+    /// Whether what takes long has shown the clearance that was asked for last.
+    is_shown_at_length: bool,
 }
 
 impl Sheet {
@@ -203,11 +205,15 @@ impl Sheet {
         let tolerance = accuracy.rounding.max(WARM_RESOLUTION_OF_ERROR * off);
         let asked = Asked { sheet: self, side, size, tolerance };
         let mut found = near.shown(&asked, tip, tool, Manner { is_thorough: false, piece: None });
-        // What takes long is tried where the rest does not show it.
-        if is_thorough && found.is_none() {
-            found = near.shown(&asked, tip, tool, Manner { is_thorough, piece: None });
+        // What takes long is tried where the rest does not show it, if it is asked for or mostly does.
+        let is_at_length = found.is_none();
+        if is_at_length && (is_thorough || near.is_shown_at_length) {
+            found = near.shown(&asked, tip, tool, Manner { is_thorough: true, piece: None });
+        }
+        if is_at_length && is_thorough {
             found = found.or_else(|| near.shown_in_pieces(&asked, tip, tool));
         }
+        near.is_shown_at_length = is_at_length && found.is_some();
         self.near.borrow_mut()[slot] = Some(near);
         found.map(|reading| (reading, off))
     }
@@ -216,9 +222,8 @@ impl Sheet {
     pub(super) fn look_at(&self, place: &Vec3, tool: &Tool<'_>) -> bool {
         let mut near = self.near.borrow_mut();
         let Some(near) = near[usize::from(tool.profile.is_point())].as_mut() else { return false };
-        let apart = |part: &Part| (part.near(place) - place).norm();
-        let found = nearest_by(&near.parts, apart);
-        near.last = found.and_then(|k| Some((k, near.parts.get(k)?.nearest_parameters(place))));
+        near.last = nearest_to(&near.parts, place, f64::INFINITY)
+            .and_then(|k| Some((k, near.parts.get(k)?.nearest_parameters(place))));
         near.last.is_some()
     }
 
@@ -258,6 +263,7 @@ impl Sheet {
         };
         let known = known.filter(|_| moved <= 4.0 * wide);
         let margin = if known.is_some() { wide } else { FIRST_MARGIN * wide };
+        let is_shown_at_length = known.as_ref().is_some_and(|near| near.is_shown_at_length);
         // The contact of before is a bound for now, unless the tool went far.
         let before = known.and_then(|near| {
             let (k, at) = near.last?;
@@ -287,6 +293,7 @@ impl Sheet {
             stretch,
             parts,
             last,
+            is_shown_at_length,
         })
     }
 
@@ -447,6 +454,25 @@ impl Near {
 pub(super) fn nearest_by(parts: &[Part], apart: impl Fn(&Part) -> f64) -> Option<usize> {
     let all = parts.iter().map(apart).enumerate();
     all.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
+}
+
+/// The part nearest to a place, if one is as near as `close`: that in whose middle the place is most first, so that few others
+/// can be nearer.
+pub(super) fn nearest_to(parts: &[Part], place: &Vec3, close: f64) -> Option<usize> {
+    let least = |part: &Part| (part.center - place).norm() - part.radius;
+    let first = nearest_by(parts, least)?;
+    let apart = |part: &Part| (part.near(place) - place).norm();
+    let mut best = (first, apart(parts.get(first)?));
+    for (k, part) in parts.iter().enumerate() {
+        if k == first || least(part) > close.min(best.1) {
+            continue;
+        }
+        let distance = apart(part);
+        if distance < best.1 {
+            best = (k, distance);
+        }
+    }
+    Some(best.0)
 }
 
 /// About the place of a patch nearest to a point, with its parameters.
