@@ -1,10 +1,13 @@
 //! Corners that turn the path sharply, in all bands and from all distances: one vertex does for a corner.
 
 use super::{
-    refused::{Found, turns_sharply},
+    refused::{AMPLE, Found, turns_sharply},
     *,
 };
-use crate::error::RoleName;
+use crate::{
+    error::RoleName,
+    verify::{Rule, Violation},
+};
 
 /// Of the tool.
 const RADIUS: f64 = 0.5;
@@ -237,10 +240,9 @@ fn a_tool_goes_back_from_a_neck_whose_walls_are_all_but_one_line() {
     }
 }
 
-/// A line touches a hollow sphere with its end and then with its top. Without a width it goes through no neck there: it went back the way that it came.
-#[test]
-fn a_line_that_touches_with_both_ends_is_in_no_neck() {
-    let motion = Found {
+/// A line that touches a hollow sphere with its end and then with its top.
+fn end_and_top() -> Found {
+    Found {
         cutter: &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 4.230688854157487],
         axis: v(-0.44493995633705036, 0.1938010330624687, 0.8743395192021824),
         from: v(1.151351006060364, -0.10722283346716854, 0.31524096845428706),
@@ -265,6 +267,32 @@ fn a_line_that_touches_with_both_ends_is_in_no_neck() {
             plane(-0.7526964522240472, 0.4768935115888705, -0.45389495416204895, -1.133049327460995),
         ),
         stop: (Relation::Past, plane(0.8447248292631784, -0.5352008621314936, 0.0, 0.8556519259081886)),
-    };
-    turns_sharply(&motion);
+    }
+}
+
+/// Without a width it goes through no neck in that corner: it went back the way that it came.
+#[test]
+fn a_line_that_touches_with_both_ends_is_in_no_neck() {
+    turns_sharply(&end_and_top());
+}
+
+/// A path that goes back from a corner the way that it came is not proven, whether it turns there on the spot or by steps as short as the band is wide.
+#[test]
+fn a_path_that_goes_back_by_short_steps_is_not_proven() {
+    let mut path = end_and_top().run(AMPLE).expect("a path").remove(1);
+    let way = |at: &[ToolPosition]| at[1].tip - at[0].tip;
+    let turn = path.points.windows(3).position(|at| way(at).dot(&way(&at[1..])) < 0.0).expect("a corner") + 1;
+    let led_there: Vec<ToolPosition> = path.points[..turn].iter().rev().copied().collect();
+    let corner = path.points[turn];
+    let beside = |step: Vec3| ToolPosition { tip: corner.tip + step, ..corner };
+    let aside = v(0.8207, 0.5714, 0.0071) * 1.2e-5;
+    let steps = [beside(aside), beside(aside + v(-0.5493, -0.6499, 0.5252) * 1.5e-5)];
+    path.points.truncate(turn + 1);
+    for steps in [&steps[..], &[]] {
+        let mut back = path.clone();
+        back.points.extend(steps.iter().chain(&led_there));
+        let evidence = crate::verify::verify(&back, &|| false).expect("evidence");
+        let is_against = |violation: &Violation| violation.rule == Rule::Progress;
+        assert!(evidence.violations.iter().any(is_against), "{} steps: {evidence:?}", steps.len());
+    }
 }
