@@ -177,9 +177,12 @@ impl Stand {
         }
     }
 
-    /// Whether a position is so near to the vertex of a cone that the tool may turn about it.
+    /// Whether a position is so near to the vertex of a cone that the tool may turn about it, at its end or at the height that guides it.
     pub(crate) fn is_about_vertex(&self, at: &ToolPosition, band: f64) -> bool {
-        self.base.is_about_vertex(&at.tip, band) || self.other.is_about_vertex(&at.tip, band)
+        let height = if let ToolAxis::Tangent { height, .. } = self.mode { height } else { 0.0 };
+        [at.tip, at.tip + at.axis * height]
+            .iter()
+            .any(|place| self.base.is_about_vertex(place, band) || self.other.is_about_vertex(place, band))
     }
 
     /// How far the axis of a position is from what the law asks for.
