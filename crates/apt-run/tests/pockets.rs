@@ -34,6 +34,7 @@ fn every_mistake_of_a_pocket_has_its_number() {
     assert_eq!(square(".2,1,.5,10,20,20,0,5"), [Some(3516)]);
     let figure = |points: &str| numbers("", ".5", GOOD, points);
     assert_eq!(figure("0,0,0,4,0,0,4,0,0,4,4,0,0,4,0"), [Some(3501)], "a point twice");
+    assert_eq!(figure("0,0,0,4,0,0,0,0,0,0,4,0"), [Some(3501)], "there and back again");
     assert_eq!(figure("0,0,0,2,0,0,4,0,0,4,4,0,0,4,0"), [Some(3502)], "a point on a side");
     assert_eq!(figure("0,0,0,4,0,0,4,4,1,0,4,0"), [Some(3503)], "not in a plane");
     assert_eq!(figure("0,0,0,4,0,0,1,1,0,0,4,0"), [Some(3504)], "an inward corner");

@@ -10,8 +10,8 @@ pub(super) fn text(failure: &Failure) -> Text {
         Failure::Corner { corner, fault, .. } => {
             let point = corner + 1;
             let what = match fault {
-                CornerFault::Duplicate => {
-                    format!("point {point} of the pocket and the one before are the same")
+                CornerFault::Duplicate { other } => {
+                    format!("points {} and {point} of the pocket are the same", other + 1)
                 }
                 CornerFault::Collinear => {
                     format!("point {point} of the pocket is on the line through its neighbours")

@@ -5,8 +5,11 @@ use apt_geometry::{Vec3, canonical::GeometryKind};
 /// What is wrong with the points of a pocket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CornerFault {
-    /// The point and the one before are the same (3501).
-    Duplicate,
+    /// The point and one that the statement names earlier are the same (3501).
+    Duplicate {
+        /// Index of the earlier one.
+        other: usize,
+    },
     /// The point lies on the line through its neighbours (3502).
     Collinear,
     /// The sides at the point are not in the plane of the others (3503).
@@ -98,7 +101,7 @@ impl PocketFailure {
     pub fn apt3(&self) -> Option<u16> {
         Some(match self {
             Self::Corner { fault, .. } => match fault {
-                CornerFault::Duplicate => 3501,
+                CornerFault::Duplicate { .. } => 3501,
                 CornerFault::Collinear => 3502,
                 CornerFault::NotInPlane => 3503,
                 CornerFault::Concave => 3504,

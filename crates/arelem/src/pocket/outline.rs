@@ -51,8 +51,9 @@ impl Outline {
         let count = points.len();
         let before = |k: usize| (k + count - 1) % count;
         let same = |a: &Vec3, b: &Vec3, limit: f64| (a - b).amax() <= limit;
-        if let Some(corner) = (0..count).find(|&k| same(&points[k], &points[before(k)], SAME_POINT)) {
-            return Err(fail(corner, CornerFault::Duplicate));
+        let earlier = |k: usize| (0..k).find(|&other| same(&points[k], &points[other], SAME_POINT));
+        if let Some((corner, other)) = (1..count).find_map(|k| Some((k, earlier(k)?))) {
+            return Err(fail(corner, CornerFault::Duplicate { other }));
         }
         let sides: Vec<Vec3> = (0..count).map(|k| (points[k] - points[before(k)]).normalize()).collect();
         // sides[k] ends at point k.

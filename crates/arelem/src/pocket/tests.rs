@@ -126,12 +126,39 @@ fn walls_of_a_canted_pocket_stand_along_the_tool_axis() {
 
 #[test]
 fn points_that_make_no_convex_figure_are_refused() {
-    let cases: [(CornerFault, usize, u16, &[[f64; 3]]); 7] = [
+    let cases: [(CornerFault, usize, u16, &[[f64; 3]]); 10] = [
         (
-            CornerFault::Duplicate,
+            CornerFault::Duplicate { other: 1 },
             2,
             3501,
             &[[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 5.0, 0.0]],
+        ),
+        // The figure closes by itself.
+        (
+            CornerFault::Duplicate { other: 0 },
+            3,
+            3501,
+            &[[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 0.0]],
+        ),
+        // Points need not follow one another to be the same: there and back again, and a figure of eight.
+        (
+            CornerFault::Duplicate { other: 0 },
+            2,
+            3501,
+            &[[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 5.0, 0.0]],
+        ),
+        (
+            CornerFault::Duplicate { other: 1 },
+            4,
+            3501,
+            &[
+                [0.0, 0.0, 0.0],
+                [4.0, 2.0, 0.0],
+                [8.0, 0.0, 0.0],
+                [8.0, 4.0, 0.0],
+                [4.0, 2.0, 0.0],
+                [0.0, 4.0, 0.0],
+            ],
         ),
         (
             CornerFault::Collinear,
