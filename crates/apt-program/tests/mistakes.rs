@@ -125,6 +125,7 @@ const CASES: &[Case] = &[
     ("OBTAIN of a number", "A=1\nOBTAIN,POINT/A,X", &[(2, 152)]),
     ("unnamed nested pattern", "GOTO/(PATERN/LINEAR,(1,1),(2,2),5)", &[(1, 820)]),
     ("pattern of one point", "P=PATERN/LINEAR,(1,1)", &[(1, 800)]),
+    ("ruled surface of one curve", "P=RLDSRF/(PLANE/0,0,1,0),(0,0),(4,0),(2,1)", &[(1, 1002)]),
     ("two words of SYN", "SYN/GOLFT,GORGT", &[(1, 355)]),
     ("a number in SYN", "SYN/3,POINT", &[(1, 19)]),
     ("a number for the word of SYN", "SYN/A,3", &[(1, 19)]),

@@ -1,6 +1,6 @@
 //! Numbers and severities of findings, as the dialects have them.
 
-use apt_geometry::{canonical::GeometryKind, definition::DefinitionError};
+use apt_geometry::definition::DefinitionError;
 use apt_syntax::{dialect::DialectName, error::SyntaxErrorKind};
 
 use super::{ControlFinding, FindingKind, Found, SculpturedFinding, Severity, SynonymFault};
@@ -43,11 +43,7 @@ impl FindingKind {
             Self::FunctionMixed { .. } => 80,
             Self::FunctionDomain { .. } | Self::NotParallel { .. } | Self::AngleOfCenter => 66,
             Self::NegativeRoot { .. } => 67,
-            Self::Definition {
-                kind: GeometryKind::Pattern,
-                error: DefinitionError::UnknownFormat { .. },
-            } => 800,
-            Self::Definition { error, .. } => return definition_number(error),
+            Self::Definition { error, .. } => return error.apt3(),
             Self::DefinitionWord { .. } | Self::UnknownType { .. } => 1000,
             Self::UnnamedPattern => 820,
             Self::VerticalZSurface => 1005,
@@ -293,18 +289,5 @@ fn argument_number(function: &str) -> Option<u16> {
         "NUMF" => Some(36),
         "CANF" => Some(39),
         _ => None,
-    }
-}
-
-/// The APT III number of a definition error (language reference 4.0 and 9.2).
-fn definition_number(error: &DefinitionError) -> Option<u16> {
-    match error {
-        DefinitionError::UnknownFormat { .. } => Some(1000),
-        DefinitionError::WrongModifier { .. } => Some(1003),
-        DefinitionError::Impossible { .. } => Some(1005),
-        DefinitionError::CanonicalCount { .. } => Some(84),
-        DefinitionError::CanonicalKind { .. } => Some(80),
-        DefinitionError::NotFinite { .. } => None,
-        DefinitionError::Special { number, .. } => Some(*number),
     }
 }
