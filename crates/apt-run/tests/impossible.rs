@@ -47,3 +47,33 @@ fn circles_without_a_common_tangent_are_told_as_circles() {
     let (message, _) = told("L=LINE/(1,1),LEFT,TANTO,(CIRCLE/0,0,5)\nFINI\n");
     assert!(message.contains("the point lies inside the circle"), "{message}");
 }
+
+/// Number and hint of the error of a program whose motions are run.
+fn refused(motion: &str) -> (Option<u16>, Option<String>) {
+    let text =
+        format!("CUTTER/4\nL=LINE/0,0,1,0\nC=CIRCLE/0,-14,10\nFROM/0,-2,0\nINDIRV/1,0,0\n{motion}\nFINI\n");
+    let document = Document::new(&text, Some("sample.apt".to_owned()), &Arc::new(Settings::default()));
+    let all = document.diagnostics(Level::Motion, &|| false, &mut |_, _| {}).unwrap();
+    let error = all.into_iter().find(|one| one.wording.code == "APT0641").unwrap();
+    (error.wording.apt3, error.wording.hint)
+}
+
+#[test]
+fn lines_that_are_parallel_and_circles_with_one_centre_are_told_as_such() {
+    for relation in ["TO", "ON", "PAST"] {
+        let (number, hint) = refused(&format!("TLRGT,GOFWD/L,{relation},(LINE/0,-9,5,-9)"));
+        assert_eq!(number, Some(715), "{relation}");
+        assert!(hint.unwrap().contains("parallel"), "{relation}");
+        let (number, hint) = refused(&format!("TLLFT,GOFWD/C,{relation},(CIRCLE/0,-14,30)"));
+        assert_eq!(number, Some(717), "{relation}");
+        assert!(hint.unwrap().contains("one centre"), "{relation}");
+    }
+    // Circles beside one another and a line beside a circle have no number of their own.
+    for motion in [
+        "TLLFT,GOFWD/C,TO,(CIRCLE/50,-14,20)",
+        "TLLFT,GOFWD/C,TO,(LINE/0,9,5,9)",
+        "TLRGT,GOFWD/L,TO,(CIRCLE/0,-50,20)",
+    ] {
+        assert_eq!(refused(motion).0, Some(714), "{motion}");
+    }
+}

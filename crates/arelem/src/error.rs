@@ -37,6 +37,10 @@ pub enum Iteration {
 pub enum Course {
     /// The positions are the solutions of an equation that has none.
     Analytic,
+    /// Path and check surface are parallel lines (715).
+    Parallel,
+    /// Path and check surface are circles about one axis (717).
+    Concentric,
     /// The path closes on itself and meets nothing in a turn of this length.
     Closed {
         /// Length of a turn.
@@ -333,7 +337,7 @@ pub enum MotionFailure {
         /// Where.
         tip: Vec3,
     },
-    /// The check surface is never met (714): how near the path comes.
+    /// The check surface is never met (714, and 715 and 717 as the course says): how near the path comes.
     #[error("check surface never met; nearest {nearest}")]
     NeverMet {
         /// Which check surface.
@@ -476,6 +480,8 @@ impl MotionFailure {
             Self::NoForwardDirection => 504,
             Self::DirectionUndetermined { .. } => 505,
             Self::TangentSurfaces { .. } => 802,
+            Self::NeverMet { course: Course::Parallel, .. } => 715,
+            Self::NeverMet { course: Course::Concentric, .. } => 717,
             Self::NeverMet { .. } => 714,
             Self::NoneAhead { .. } => 724,
             Self::NoPositionAlong { found: 0, .. } => 714,

@@ -341,6 +341,8 @@ fn path(failure: &Failure) -> Text {
         )
         .hint(match (course, turns_back) {
             (Course::Analytic, _) => "check the direction and the surface".to_owned(),
+            (Course::Parallel, _) => "drive and check surface are parallel lines".to_owned(),
+            (Course::Concentric, _) => "drive and check surface are circles about one centre".to_owned(),
             (Course::Closed { length }, _) => {
                 format!("the path closes after {}: check the surface", number(*length))
             }

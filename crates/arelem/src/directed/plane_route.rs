@@ -90,6 +90,19 @@ impl Track {
         }
     }
 
+    /// Why a curve that is at no level anywhere on the path is never met.
+    fn never_meets(&self, stop: &Curve) -> Course {
+        match (&self.curve, stop) {
+            (TrackCurve::Line { .. }, Curve::Line { .. }) => Course::Parallel,
+            (TrackCurve::Circle { center, .. }, Curve::Circle { .. })
+                if stop.parallel_directions(center, &self.axis).is_none() =>
+            {
+                Course::Concentric
+            }
+            _ => Course::Analytic,
+        }
+    }
+
     /// Where on the way ahead a distance from a curve that is never zero is least.
     fn nearest(&self, stop: &Curve, distance: &dyn Fn(f64) -> f64) -> (f64, f64) {
         let mut places = vec![0.0];
@@ -264,7 +277,7 @@ fn crossing(
             at: track.at(x),
             is_there: prepared.checks[0].is_there(start, prepared.size),
             turns_back: None,
-            course: Course::Analytic,
+            course: track.never_meets(stop),
         });
     }
     let found = all.len();
