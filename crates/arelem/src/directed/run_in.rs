@@ -48,6 +48,8 @@ pub(super) fn follow<'a>(
             Err(again) if is_closed(&again.failure) => farthest = again,
             // Nor may one that leads away from the check surface from where the tool had not turned yet be the one asked for.
             Err(again) if is_left_within(&again.failure, &prepared.tip, length) => farthest = again,
+            // Nor may one on which all vectors that are allowed do not lead as far as the tool turns: it goes round there.
+            Err(again) if is_used_up_within(&again.failure, &prepared.tip, length) => farthest = again,
             // Once it has turned the tool goes on with its surfaces on the same hands as it came with, or it goes back along them.
             Ok(found) if changes_hands(&running, &found.points, length)? => {}
             // Nor does it go to and fro while it turns, if it need not.
@@ -118,6 +120,11 @@ fn is_closed(failure: &MotionFailure) -> bool {
 /// Whether no check surface was met by a path that is nowhere nearer to it than within a distance of a place.
 fn is_left_within(failure: &MotionFailure, place: &Vec3, distance: f64) -> bool {
     matches!(failure, MotionFailure::NeverMet { at, .. } if (at - place).norm() <= distance)
+}
+
+/// Whether NUMPTS ended a path within a distance of a place. A ring need not come by where it was entered, which is how one is known before.
+fn is_used_up_within(failure: &MotionFailure, place: &Vec3, distance: f64) -> bool {
+    matches!(failure, MotionFailure::TooManyPoints { at, .. } if (at - place).norm() <= distance)
 }
 
 /// Whether a path leaves a place by a distance and is nearer to it later.

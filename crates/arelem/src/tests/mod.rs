@@ -36,6 +36,7 @@ mod tangencies;
 mod troughs;
 mod turning;
 mod turning_begins;
+mod turning_rings;
 mod vertices;
 mod walls;
 mod worked;

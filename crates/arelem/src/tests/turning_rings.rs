@@ -1,0 +1,59 @@
+//! Motions at whose beginning the tool turns to its law over so short a way that it would go round about the place where it
+//! began, as often as NUMPTS lets it.
+
+use apt_geometry::motion::{AxisAngle, ToolAxis};
+
+use super::{turning::proven, *};
+
+/// A start-up with an upright tool, and a motion with its axis at an angle to the part surface, in several bands.
+fn leads_out(
+    cutter: &[f64],
+    part: &Geometry,
+    place: Vec3,
+    (mode, ahead): (ToolAxis, Vec3),
+    walls: [&Geometry; 2],
+) {
+    let [wall, check] = walls;
+    for (inside, outside) in [
+        (0.001, 0.001),
+        (0.002, 0.001),
+        (0.001, 0.002),
+        (0.0, 0.002),
+        (0.002, 0.0),
+        (0.003, 0.0),
+        (0.0005, 0.0005),
+    ] {
+        let mut p = Program::new();
+        p.tolerance(inside, outside).cutter(cutter).from(place.x, place.y, place.z);
+        p.run(&MotionCommand::MultipleAxes(None));
+        p.go(&[(Relation::To, wall), (Relation::To, part)]);
+        p.run(&MotionCommand::ToolAxis(mode));
+        p.side(DriveSide::Right).indirv(ahead.x, ahead.y, ahead.z);
+        p.drive(Turn::Forward, wall, Relation::To, check);
+        proven(&p);
+        let count = p.last().points.len();
+        assert!(count < 60, "{count} vectors from {inside} inside to {outside} outside");
+    }
+}
+
+#[test]
+fn a_flat_tool_that_turns_through_the_floor_does_not_go_round_on_its_rim() {
+    let floor = plane(-0.21242623939135, 0.15773387165329, 0.96436254518273, -0.19041692435313);
+    let wall = plane(0.79906449646592, -0.60109654748196, 0.01337426980932, 6.18233289343896);
+    let check = plane(0.22125675991287, 0.97521558959691, 0.0, 13.64976513088494);
+    let mode = AxisAngle::Lead(-1.02013275830953f64.to_radians());
+    let axis = ToolAxis::AtAngle { part: true, angle: 3.94977184034723f64.to_radians(), mode };
+    let (place, ahead) = (v(10.2908840634388, -5.32640433656661, 8.24336834313124), v(0.60115, 0.79914, 0.0));
+    leads_out(&[4.48673668626248, 0.78503725497092], &floor, place, (axis, ahead), [&wall, &check]);
+}
+
+#[test]
+fn a_ball_that_turns_out_from_under_a_leaning_wall_does_not_go_round() {
+    let ball = sphere(-0.85764663344714, -6.47192513514756, -93.19214728021103, 93.19214728021103);
+    let wall = plane(0.81268888919169, -0.57906266315972, -0.0649861640562, -0.86029836945708);
+    let check = plane(0.86558669391269, 0.50075909908988, 0.0, 8.65438285183973);
+    let axis =
+        ToolAxis::AtAngle { part: true, angle: 6.73166947025627f64.to_radians(), mode: AxisAngle::Plain };
+    let (place, ahead) = (v(-0.95693284363318, -9.39082394879633, 8.5438982041032), v(0.58029, 0.81441, 0.0));
+    leads_out(&[5.0877964082064, 2.5438982041032], &ball, place, (axis, ahead), [&wall, &check]);
+}
