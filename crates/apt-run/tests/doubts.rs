@@ -1,5 +1,5 @@
-//! What the arithmetic element carries out and yet doubts: a direction that nobody gave, and undercuts deeper than the
-//! cutter's radius.
+//! What the arithmetic element carries out and yet doubts: a direction that nobody gave, undercuts deeper than the
+//! cutter's radius, and a tool that turns unseen.
 
 #![expect(clippy::unwrap_used, reason = "what fails in a helper fails the test")]
 
@@ -102,5 +102,29 @@ fn a_flat_bottom_undercuts_a_part_surface_across_the_axis_as_deep_as_told() {
     for round in [".5,.25", ".5,0,0,0,10,0,1"] {
         assert_eq!(told(round, level, up, "-.3,0"), doubted, "{round}");
         assert_eq!(told(round, level, up, "-.2,0"), [], "{round}");
+    }
+}
+
+/// Without MULTAX positions have no axis (language reference 6.9), whatever the tool does.
+#[test]
+fn a_tool_that_turns_without_multax_is_told_once_for_each_law() {
+    let turning = |before: &str, laws: &[&str]| {
+        let mut text = format!("CUTTER/.5\nSP=SPHERE/0,0,0,5\nPL=PLANE/0,1,0,0\n{before}\n");
+        for law in laws {
+            text += &format!(
+                "FROM/0,0,7\nTLAXIS/{law}\nGO/ON,PL,TO,SP,ON,(PLANE/1,0,0,0)\nINDIRV/1,0,0\n\
+                 TLON,GOFWD/PL,ON,(PLANE/1,0,0,1)\nGOFWD/PL,ON,(PLANE/1,0,0,2)\n"
+            );
+        }
+        let told = codes(&(text + "FINI\n")).into_iter().filter(|(code, _)| *code == "APT0728");
+        told.map(|(_, isn)| isn).collect::<Vec<_>>()
+    };
+    assert_eq!(turning("", &["NORMPS"]), [9]);
+    assert_eq!(turning("", &["NORMPS", "ATANGL,1,5"]), [9, 15]);
+    assert_eq!(turning("MULTAX/OFF", &["NORMPS"]), [9]);
+    for (before, law) in
+        [("", "0,0,1"), ("", "0,.1,1"), ("MULTAX", "NORMPS"), ("MULTAX/ON", "NORMPS"), ("DNTCUT", "NORMPS")]
+    {
+        assert!(turning(before, &[law]).is_empty(), "{before} {law}");
     }
 }

@@ -14,7 +14,7 @@ use arelem::error::{
     AxisFailure, Course, Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName,
 };
 
-use super::{Text, a_kind, milling, number, pocket, remedy, say};
+use super::{Text, a_kind, milling, number, pocket, remedy, say, tilt};
 use crate::{diagnostic::Severity, pipeline::RunFindingKind};
 
 /// Where the budget of positions is set.
@@ -60,6 +60,7 @@ pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
             );
             (text, Severity::Warning, Some(9))
         }
+        RunFindingKind::AxisNotPutOut { angle } => (tilt::not_put_out(*angle), Severity::Warning, None),
         RunFindingKind::Edit(error) => {
             let severity = match error.kind {
                 EditErrorKind::ZeroCount { .. } => Severity::Warning,

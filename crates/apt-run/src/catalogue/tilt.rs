@@ -1,8 +1,15 @@
-//! Words for mistakes around VTLAXS and WCORN (codes 072x).
+//! Words for mistakes around VTLAXS and WCORN, and for axes that are not put out (codes 072x).
 
 use apt_cldata::tilt::{LARGEST_TILT, TiltError};
 
 use super::{Text, number, say};
+
+/// The words for a motion on which the tool turns by an angle, in radians, and whose positions are put out without axis.
+pub(super) fn not_put_out(angle: f64) -> Text {
+    let degrees = number(angle.to_degrees());
+    say("APT0728", format!("the tool turns by {degrees}° on this motion, and its axis is not put out"))
+        .hint("give MULTAX before, or an axis that stays")
+}
 
 /// The words of a mistake.
 pub(super) fn word(error: &TiltError) -> Text {

@@ -124,6 +124,11 @@ pub enum RunFindingKind {
         /// How many are allowed.
         limit: u64,
     },
+    /// The tool turns on a motion whose positions are put out without axis.
+    AxisNotPutOut {
+        /// By how much at most, radians.
+        angle: f64,
+    },
     /// TRACUT, INDEX or COPY.
     Edit(EditError),
     /// A SMIL ended before its end.

@@ -50,6 +50,8 @@ mod code {
 /// Positions in a CL record of POCKET, without and with tool axis: the buffer of Section 2 holds 240 numbers and is
 /// written when less than four positions are free.
 const POCKET_RECORD: [usize; 2] = [77, 39];
+/// Angle, radians, from which on a tool turns: what rounding of a law of the axis is far below.
+const LEAST_TURN: f64 = 1e-6;
 
 /// Everything Section 2 leaves behind.
 pub(super) struct SectionTwoOutput {
@@ -83,6 +85,8 @@ pub(super) struct Section2<'a> {
     with_axis: bool,
     /// Whether a statement that tells a tool axis has it on the path also without MULTAX, as in CL files.
     axes_without_multax: bool,
+    /// Whether it was told that the tool turns by the present law and positions have no axis.
+    has_told_of_turning: bool,
     /// Most positions of the path, how many there are, and whether a statement would have made more.
     most_points: u64,
     points: u64,
@@ -127,6 +131,7 @@ impl<'a> Section2<'a> {
             lists_suppressed: false,
             with_axis: false,
             axes_without_multax: dialect == DialectName::Cl,
+            has_told_of_turning: false,
             most_points: settings.budget.points,
             points: 0,
             too_long: false,
@@ -360,6 +365,7 @@ impl<'a> Section2<'a> {
             _ => "",
         };
         if let MotionCommand::Drive { drive, checks, .. } = command {
+            self.tell_of_turning(sequence, origin);
             let circle = match &drive.geometry {
                 Geometry::Circle(circle) | Geometry::Cylinder(circle) => Some(circle),
                 _ => None,
@@ -378,6 +384,23 @@ impl<'a> Section2<'a> {
             self.positions(origin.isn, source, false, name, &sequence.points);
         }
         self.tool = sequence.points.last().copied().or(self.tool);
+    }
+
+    /// Tells, once for each law of the axis, that a tool turns whose positions are put out without axis.
+    fn tell_of_turning(&mut self, sequence: &CutSequence, origin: &Origin) {
+        let is_seen = self.with_axis || self.axes_without_multax || !self.output_on;
+        if is_seen || self.has_told_of_turning {
+            return;
+        }
+        let turn = |at: &ToolPosition| {
+            sequence.start.axis.cross(&at.axis).norm().atan2(sequence.start.axis.dot(&at.axis))
+        };
+        let angle = sequence.points.iter().map(turn).fold(0.0, f64::max);
+        if angle > LEAST_TURN {
+            self.has_told_of_turning = true;
+            let kind = RunFindingKind::AxisNotPutOut { angle };
+            self.output.findings.push(RunFinding { kind, origin: origin.clone() });
+        }
     }
 
     /// A pocket: its feeds as FEDRAT, and its positions in records that are full from the outside.
@@ -434,9 +457,10 @@ impl<'a> Section2<'a> {
                 control(if *force { "3DCALC" } else { "2DCALC" }, code::CALCULATION, &[])
             }
             MotionCommand::MultipleAxes(setting) => {
-                self.with_axis = setting.unwrap_or(true);
+                (self.with_axis, self.has_told_of_turning) = (setting.unwrap_or(true), false);
                 ClKind::MultipleAxes(self.with_axis)
             }
+            MotionCommand::ToolAxis(_) => return self.has_told_of_turning = false,
             MotionCommand::Output(on) => {
                 let resumed = *on && !self.output_on;
                 self.output_on = *on;
