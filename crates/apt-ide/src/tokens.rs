@@ -5,8 +5,9 @@ use std::ops::Range;
 use apt_geometry::patience::Waiting;
 use apt_run::go_on;
 use apt_syntax::{
+    SyntaxKind, TextRange,
     statement::{Body, ElementKind},
-    tree::StatementView,
+    tree::{StatementView, TokenView},
     vocabulary::{WordClass, lookup},
 };
 
@@ -88,6 +89,7 @@ impl Analysis {
         let text = view.text();
         let parsed = view.parsed();
         let from = tokens.len();
+        let mut pieces = None;
         for (index, element) in parsed.elements.iter().enumerate() {
             let labelled = parsed.statement.label.as_ref().is_some_and(|label| label.range == element.range);
             let defined = parsed.statement.parts.iter().any(|part| match &part.body {
@@ -109,7 +111,14 @@ impl Analysis {
                 _ if with_marks => TokenClass::Operator,
                 _ => continue,
             };
-            push_lines(tokens, text, start, absolute(view, element.range), class, labelled || defined);
+            let defined = labelled || defined;
+            if is_over_lines(text, element.range) {
+                for piece in pieces_by_line(pieces.get_or_insert_with(|| view.tokens()), element.range) {
+                    push_lines(tokens, text, start, absolute(view, piece), class, defined);
+                }
+            } else {
+                push_lines(tokens, text, start, absolute(view, element.range), class, defined);
+            }
         }
         for comment in &parsed.comments {
             push_lines(tokens, text, start, absolute(view, *comment), TokenClass::Comment, false);
@@ -161,7 +170,32 @@ fn class(class: WordClass) -> TokenClass {
     }
 }
 
-/// Adds a token, cut at line ends: an element may be split over a continuation.
+/// Whether a piece of a statement goes on behind the end of a line.
+fn is_over_lines(text: &str, range: TextRange) -> bool {
+    text.get(Range::<usize>::from(range)).is_some_and(|piece| piece.contains(['\n', '\r']))
+}
+
+/// Where an element over several lines stands on each of them: without the sign and the remark of the continuation, the
+/// sequence field of the card and the blanks before its first character.
+fn pieces_by_line(tokens: &[TokenView], element: TextRange) -> Vec<TextRange> {
+    let mut lines: Vec<TextRange> = Vec::new();
+    let mut line_ended = true;
+    let first = tokens.partition_point(|token| token.range.start() < element.start());
+    for token in tokens[first..].iter().take_while(|token| token.range.start() < element.end()) {
+        line_ended |= token.kind == SyntaxKind::LineEnd;
+        if token.element.is_none() {
+            continue;
+        }
+        match lines.last_mut() {
+            Some(line) if !line_ended => *line = line.cover(token.range),
+            _ => lines.push(token.range),
+        }
+        line_ended = false;
+    }
+    lines
+}
+
+/// Adds a token, cut at line ends: a text may be continued.
 fn push_lines(
     tokens: &mut Vec<Token>,
     text: &str,

@@ -148,6 +148,27 @@ fn tokens_cover_words_names_numbers_and_comments() {
     expect!["PARTNO:Postprocessor  BRACKET:String $$ first remark:Comment $$ second remark:Comment P1:Variable* POINT:Type 1:Number 2:Number 3:Number M1:Macro* MACRO:Keyword DX:Parameter DY:Parameter 2:Number LOOPST:Keyword A:Label* GODLTA:Keyword DX:Parameter DY:Parameter 0:Number JUMPTO:Keyword A:Label LOOPND:Keyword TERMAC:Keyword RESERV:Keyword T:Variable 3:Number T:Variable* 1:Number 7:Number LOADTL:Postprocessor 1:Number FROM:Keyword 0:Number 0:Number 0:Number GO:Keyword TO:Modifier P1:Variable CALL:Keyword M1:Macro DX:Parameter 1:Number FINI:Keyword"].assert_eq(&tokens.join(" "));
 }
 
+/// What stands between the pieces of a name or a number that a continuation divides is no part of it: tokens that overlap
+/// cannot be said in the protocol.
+#[test]
+fn tokens_of_an_element_over_several_lines_leave_out_what_stands_between_its_pieces() {
+    let card = |text: &str, field: &str| format!("{text:<72}{field}");
+    let on_cards = format!("{}\n{}\n", card("      A=12$", "CARD0010"), card("      34", "CARD0020"));
+    let texts = ["A=1.2$ remark\n  3 5\nAB  C $ x\r\n $ y\r\n  D=7\n", on_cards.as_str()];
+    let told = texts.map(|text| {
+        let tokens = analysis(text).tokens(None, &|| false).unwrap();
+        for (one, next) in tokens.iter().zip(&tokens[1..]) {
+            assert!(one.range.end <= next.range.start, "{one:?} and {next:?} overlap in {text:?}");
+        }
+        let pieces = tokens.iter().map(|token| format!("{:?}", &text[token.range.clone()]));
+        pieces.collect::<Vec<_>>().join(" ")
+    });
+    expect![[r#"
+        "A" "=" "1.2" " remark" "3 5" "AB  C" " x" " y" "D" "=" "7"
+        "A" "=" "12" "34""#]]
+    .assert_eq(&told.join("\n"));
+}
+
 #[test]
 fn tokens_of_a_long_text_are_without_marks_and_bounded() {
     use apt_ide::tokens::{MOST_STATEMENTS_WITH_MARKS, MOST_TOKENS};

@@ -49,12 +49,13 @@ pub(crate) fn encode(
 ) -> Result<Vec<lsp::SemanticToken>, Interrupted> {
     let mut encoded = Vec::with_capacity(tokens.len());
     let mut last = lsp::Position::default();
+    let mut told_until = lsp::Position::default();
     let mut positions = Positions::of(index);
     for token in tokens {
         pace.go_on(1)?;
         let token_type = type_number(token.class);
         let mut tell = |range: lsp::Range| {
-            if range.start < last || range.start.line != range.end.line || range.start == range.end {
+            if range.start < told_until || range.start.line != range.end.line || range.start == range.end {
                 return; // Tokens that overlap or are empty cannot be said in the protocol.
             }
             let delta_line = range.start.line - last.line;
@@ -67,6 +68,7 @@ pub(crate) fn encode(
                 token_modifiers_bitset: u32::from(token.definition),
             });
             last = range.start;
+            told_until = range.end;
         };
         let range = positions.range(&token.range);
         if range.start.line == range.end.line {
@@ -147,6 +149,13 @@ mod tests {
             numbers(&encode(&index, &tokens, &Control::unlimited().pace()).unwrap()),
             [[0, 0, 2, 2], [0, 3, 2, 11], [1, 1, 1, 0], [1, 0, 8, 12], [1, 0, 1, 12]]
         );
+    }
+
+    #[test]
+    fn tokens_that_overlap_are_left_out() {
+        let index = TextIndex { rope: Rope::from_str("A=12 $ x\n"), encoding: Encoding::Utf16 };
+        let tokens = [token(2..8, TokenClass::Number), token(6..8, TokenClass::Comment)];
+        assert_eq!(numbers(&encode(&index, &tokens, &Control::unlimited().pace()).unwrap()), [[0, 2, 6, 9]]);
     }
 
     #[test]
