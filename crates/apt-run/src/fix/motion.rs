@@ -3,7 +3,8 @@
 use apt_geometry::motion::Relation;
 use apt_syntax::{
     SyntaxTree, TextRange,
-    statement::{Element, ElementKind},
+    statement::{Body, Element, ElementKind},
+    vocabulary::WordClass,
 };
 use arelem::{cure::Cure, error::MotionWarning};
 
@@ -18,6 +19,7 @@ use crate::{
 const TURNS: &[&str] = &["GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN"];
 const DRIVE_SIDES: &[&str] = &["TLLFT", "TLRGT", "TLON", "TLNDON"];
 const PART_SIDES: &[&str] = &["TLONPS", "TLOFPS"];
+const DIRECTIONS: &[&str] = &["INDIRV", "INDIRP"];
 const RELATIONS: &[&str] = &["TO", "ON", "PAST", "TANTO", "DSTAN", "PSTAN"];
 
 /// The fixes of a finding of Section 2, the likeliest first.
@@ -66,8 +68,45 @@ impl Here<'_> {
                 let direction = format!("{}INDIRV/{}", self.line_end(), triple(forward));
                 self.before(&(statement(cure)? + &direction))
             }
+            Cure::Direction(_) => {
+                let direction = statement(cure)?;
+                self.given_direction()
+                    .map_or_else(|| self.before(&direction), |given| given.rewritten(&direction))
+            }
             _ => self.before(&statement(cure)?),
         }
+    }
+
+    /// The INDIRV or INDIRP that is in force here, where nothing between the two moves the tool, is jumped to or decides
+    /// what is executed.
+    fn given_direction(&self) -> Option<Here<'_>> {
+        if self.parsed.statement.label.is_some() {
+            return None;
+        }
+        let before = (0..self.view.index).rev().map(|index| self.tree.statement(index));
+        let statements =
+            before.map(|view| (view.parsed(), view)).filter(|(parsed, _)| !parsed.elements.is_empty());
+        for (parsed, view) in statements {
+            let single =
+                parsed.statement.parts.len() == 1 && parsed.statement.label.is_none() && !parsed.is_broken();
+            let verb = parsed.elements.first().filter(|_| single)?;
+            if is_word(verb, DIRECTIONS) {
+                return Some(Here { tree: self.tree, view, parsed, origin: self.origin });
+            }
+            if !lets_direction_be(&parsed.statement.parts[0].body) {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// Another statement in the place of this one, where that stands on one line.
+    fn rewritten(&self, statement: &str) -> Option<Fix> {
+        let elements = &self.parsed.elements;
+        let whole = TextRange::new(elements.first()?.range.start(), elements.last()?.range.end());
+        let now = self.written(whole);
+        (!now.contains(['\n', '\r']))
+            .then(|| self.edit(whole, statement, format!("Replace {now} by {statement}")))
     }
 
     fn before(&self, statement: &str) -> Option<Fix> {
@@ -130,6 +169,19 @@ impl Here<'_> {
 
     fn edit(&self, range: TextRange, text: &str, title: String) -> Fix {
         Fix { title, edits: vec![(self.bytes(range), text.to_owned())], preferred: false }
+    }
+}
+
+/// Whether a statement leaves a direction that is given in force: it neither moves the tool nor decides what is executed.
+fn lets_direction_be(body: &Body) -> bool {
+    use WordClass::{PathControl, PathParameter, Postprocessor, PostprocessorBare, SystemFlag, ToolPosition};
+    match body {
+        Body::Text { .. } | Body::Assignment { .. } | Body::Definition { .. } => true,
+        Body::Major { word, .. } => matches!(
+            word.word.class,
+            PathControl | PathParameter | Postprocessor | PostprocessorBare | SystemFlag | ToolPosition
+        ),
+        _ => false,
     }
 }
 
@@ -228,6 +280,21 @@ mod tests {
             let hit = made.iter().find(|(told, _)| told == title);
             let Some((_, fixed)) = hit else { panic!("{code}: no {title:?} in {made:?}") };
             assert!(fixed.contains(expected), "{code}: {fixed}");
+        }
+    }
+
+    /// A direction that is given already is given anew: with two of them the first one would have no effect (APT0957).
+    #[test]
+    fn a_direction_before_the_motion_is_replaced() {
+        for (given, title) in [
+            ("INDIRV/0,1,0", "Replace INDIRV/0,1,0 by INDIRV/0,-1,0"),
+            ("INDIRP/0,9,0 $$ up\n$$ and on", "Replace INDIRP/0,9,0 by INDIRV/0,-1,0"),
+            ("INDIRV/0,1,0\nNOPS\nFEDRAT/10", "Replace INDIRV/0,1,0 by INDIRV/0,-1,0"),
+            // A jump may lead between the two.
+            ("INDIRV/0,1,0\nA1)FEDRAT/10", "Insert INDIRV/0,-1,0 before the motion"),
+        ] {
+            let made = fixes(&format!("{HEAD}FROM/0,2,0\n{given}\nOFFSET/TO,L1\nFINI\n"), "APT0621");
+            assert!(made.iter().any(|(told, _)| told == title), "{given}: {made:?}");
         }
     }
 
