@@ -84,6 +84,8 @@ impl Analysis {
                 };
                 match last {
                     Some(last) => {
+                        // While a program is written a block may end behind the one in which it begins.
+                        let last = stack.last().map_or(last, |(outer, _)| last.min(*outer));
                         let end = usize::from(tree.statement(last).range().end());
                         entry.range = whole.start..end.max(whole.end);
                         stack.push((last, entry));

@@ -148,6 +148,25 @@ fn tokens_cover_words_names_numbers_and_comments() {
     expect!["PARTNO:Postprocessor  BRACKET:String $$ first remark:Comment $$ second remark:Comment P1:Variable* POINT:Type 1:Number 2:Number 3:Number M1:Macro* MACRO:Keyword DX:Parameter DY:Parameter 2:Number LOOPST:Keyword A:Label* GODLTA:Keyword DX:Parameter DY:Parameter 0:Number JUMPTO:Keyword A:Label LOOPND:Keyword TERMAC:Keyword RESERV:Keyword T:Variable 3:Number T:Variable* 1:Number 7:Number LOADTL:Postprocessor 1:Number FROM:Keyword 0:Number 0:Number 0:Number GO:Keyword TO:Modifier P1:Variable CALL:Keyword M1:Macro DX:Parameter 1:Number FINI:Keyword"].assert_eq(&tokens.join(" "));
 }
 
+/// While a program is written a loop may end behind the macro in which it begins: the outline is nested all the same.
+#[test]
+fn entries_lie_within_those_they_are_inside_of() {
+    fn check(text: &str, entries: &[OutlineEntry], outer: &std::ops::Range<usize>) {
+        for entry in entries {
+            let within = outer.start <= entry.range.start && entry.range.end <= outer.end;
+            assert!(within, "{} {:?} in {outer:?}:\n{text}", entry.name, entry.range);
+            check(text, &entry.children, &entry.range);
+        }
+    }
+    for text in [
+        "M1=MACRO/A\nLOOPST\nGOTO/A,0,0\nTERMAC\nGOTO/1,2,3\nLOOPND\nFINI\n",
+        "LOOPST\nM1=MACRO/A\nGOTO/A,0,0\nLOOPND\nB=1\nTERMAC\nFINI\n",
+        "M1=MACRO/A\nIF(A.GT.1)THEN\nB=1\nTERMAC\nC=1\nENDIF\nFINI\n",
+    ] {
+        check(text, &analysis(text).outline(&|| false).unwrap(), &(0..text.len()));
+    }
+}
+
 /// What stands between the pieces of a name or a number that a continuation divides is no part of it: tokens that overlap
 /// cannot be said in the protocol.
 #[test]
