@@ -1,6 +1,10 @@
 //! The control tape: of a program, which is run first, or of the text of a CL file, which is read.
 
-use std::sync::Arc;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use apt_cldata::{
     cltape::{TapeNote, TapeReadError},
@@ -52,6 +56,14 @@ pub enum TapeError {
         /// What there is.
         known: Vec<String>,
     },
+    /// The definition file of a machine cannot be used.
+    #[error("{}: {why}", file.display())]
+    Definition {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        why: String,
+    },
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -89,6 +101,12 @@ impl ControlTape {
 /// Characters of text that a statement of a CL text file carries at most.
 const CL_TEXT: usize = 80;
 
+/// The ending of the names of definition files; what ends otherwise is the name of a machine that comes with the program.
+pub const DEFINITION_ENDING: &str = ".toml";
+
+/// A file larger than this is no definition of a machine (bytes).
+const GREATEST_DEFINITION: u64 = 1 << 20;
+
 /// The machines that come with the program.
 pub fn machines() -> Vec<MachineInfo> {
     apt_post::machines()
@@ -100,10 +118,34 @@ pub fn machines() -> Vec<MachineInfo> {
 ///
 /// [`TapeError::UnknownMachine`].
 pub fn machine(name: &str) -> Result<MachineDefinition, TapeError> {
-    apt_post::machine(name).map_err(|_| TapeError::UnknownMachine {
-        name: name.to_owned(),
-        known: machines().into_iter().map(|machine| machine.name).collect(),
-    })
+    apt_post::machine(name).map_err(|_| unknown_machine(name))
+}
+
+/// The text of that definition, to begin another one with.
+///
+/// # Errors
+///
+/// [`TapeError::UnknownMachine`].
+pub fn definition_file(name: &str) -> Result<&'static str, TapeError> {
+    apt_post::definition_file(name).map_err(|_| unknown_machine(name))
+}
+
+fn unknown_machine(name: &str) -> TapeError {
+    let known = machines().into_iter().map(|machine| machine.name).collect();
+    TapeError::UnknownMachine { name: name.to_owned(), known }
+}
+
+/// Reads the definition file of a machine.
+fn machine_of_file(file: PathBuf) -> Result<MachineDefinition, TapeError> {
+    let read = || {
+        let length = fs::metadata(&file).map_err(|error| error.to_string())?.len();
+        if length > GREATEST_DEFINITION {
+            return Err(format!("larger than {GREATEST_DEFINITION} bytes"));
+        }
+        let text = fs::read_to_string(&file).map_err(|error| error.to_string())?;
+        MachineDefinition::from_toml(&text).map_err(|error| error.to_string().trim_end().to_owned())
+    };
+    read().map_err(|why| TapeError::Definition { file, why })
 }
 
 /// The image of a tape as a punch makes it.
@@ -200,12 +242,22 @@ impl Analysis {
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<ControlTape, TapeError> {
-        let machine = machine(machine_name)?;
+        let machine = self.machine(machine_name)?;
         let source = match self.document().dialect() {
             DialectName::Cl => self.read_cutter_locations(cancel)?,
             _ => self.run_to_cutter_locations(cancel, progress)?,
         };
         Ok(self.tape_of(source, &machine, code, cancel)?)
+    }
+
+    /// A machine that comes with the program, or the one of a definition file; where the path of the file is not whole it
+    /// begins in the folder of the program.
+    fn machine(&self, name: &str) -> Result<MachineDefinition, TapeError> {
+        if !name.ends_with(DEFINITION_ENDING) {
+            return machine(name);
+        }
+        let folder = self.document().surroundings().path.as_deref().and_then(Path::parent);
+        machine_of_file(folder.unwrap_or(Path::new("")).join(name))
     }
 
     /// The machine that the first MACHIN of the program names, as it is written there; it may be one that is not known.
@@ -237,8 +289,11 @@ impl Analysis {
     ) -> Result<Vec<Diagnostic>, Cancelled> {
         let settings = self.document().settings();
         let Some(name) = settings.machine.as_deref() else { return Ok(Vec::new()) };
-        let machine = match machine(name) {
+        let machine = match self.machine(name) {
             Ok(machine) => machine,
+            Err(TapeError::Definition { file, why }) => {
+                return Ok(catalogue::unusable_machine(&file.display().to_string(), &why, settings));
+            }
             Err(TapeError::UnknownMachine { known, .. }) => {
                 return Ok(catalogue::unknown_machine(name, &known, settings));
             }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::analysis::Language;
+use crate::analysis::{DEFINITION_ENDING, Language};
 
 /// Settings as they were written, with keys in kebab case.
 pub(crate) type Values = serde_json::Map<String, Value>;
@@ -238,7 +238,12 @@ fn read_project(language: &dyn Language, path: &Path) -> Result<Values, Settings
     if let Err(message) = check(language, &values) {
         return Err(SettingsError::Unknown { path, message });
     }
-    // Include folders of a project file are relative to it.
+    // The definition of a machine and the include folders of a project file are relative to it.
+    if let (Some(Value::String(machine)), Some(home)) = (values.get_mut("machine"), path.parent())
+        && machine.ends_with(DEFINITION_ENDING)
+    {
+        *machine = home.join(&*machine).to_string_lossy().into_owned();
+    }
     if let (Some(Value::Array(folders)), Some(home)) = (values.get_mut("include"), path.parent()) {
         for folder in folders {
             if let Some(relative) = folder.as_str() {

@@ -19,5 +19,7 @@ mod words;
 pub use engine::{Cancelled, post, post_until};
 pub use finding::{PostFinding, PostFindingKind, Severity};
 pub use form::{Treatment, treatment};
-pub use machine::{LinearAxis, MachineDefinition, MachineError, MachineInfo, machine, machines};
+pub use machine::{
+    LinearAxis, MachineDefinition, MachineError, MachineInfo, definition_file, machine, machines,
+};
 pub use tape::{Block, CARD_TEXT, PostOptions, Tape};

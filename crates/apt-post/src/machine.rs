@@ -520,10 +520,22 @@ pub fn machines() -> Vec<MachineInfo> {
 /// # Errors
 /// A name that no bundled machine has.
 pub fn machine(name: &str) -> Result<MachineDefinition, MachineError> {
+    bundled(name).map(|(machine, _)| machine)
+}
+
+/// The definition file of a bundled machine, to begin another one with.
+///
+/// # Errors
+/// A name that no bundled machine has.
+pub fn definition_file(name: &str) -> Result<&'static str, MachineError> {
+    bundled(name).map(|(_, text)| text)
+}
+
+fn bundled(name: &str) -> Result<(MachineDefinition, &'static str), MachineError> {
     for text in BUNDLED {
         let machine = MachineDefinition::from_toml(text)?;
         if machine.id == name || machine.machin.iter().any(|known| known.eq_ignore_ascii_case(name)) {
-            return Ok(machine);
+            return Ok((machine, text));
         }
     }
     Err(MachineError::UnknownMachine { name: name.to_owned() })

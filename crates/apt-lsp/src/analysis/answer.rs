@@ -21,7 +21,7 @@ pub(crate) use apt_ide::lens::Lens;
 pub(crate) use apt_ide::navigation::{Located, Occurrence, Spot};
 pub(crate) use apt_ide::outline::{OutlineEntry, OutlineKind};
 pub(crate) use apt_ide::signature::{Signature, SignatureHelp};
-pub(crate) use apt_ide::tape::{MachineInfo, TapeCode, TextOfBinary, length_inches};
+pub(crate) use apt_ide::tape::{DEFINITION_ENDING, MachineInfo, TapeCode, TextOfBinary, length_inches};
 pub(crate) use apt_ide::tokens::{Token, TokenClass};
 pub(crate) use apt_ide::{Files, Fix, Level, Severity, Surroundings, normalised};
 pub(crate) use apt_run::{diagnostic::SourceFile, document::Holdings};

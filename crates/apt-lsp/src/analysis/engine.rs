@@ -61,6 +61,10 @@ impl Language for Engine {
         apt_ide::tape::machines()
     }
 
+    fn machine_definition(&self, name: &str) -> Result<String, Refusal> {
+        apt_ide::tape::definition_file(name).map(str::to_owned).map_err(tape_refusal)
+    }
+
     fn has_machine(&self, name: &str) -> bool {
         apt_ide::tape::machine(name).is_ok()
     }
@@ -577,6 +581,7 @@ fn tape_refusal(error: apt_ide::tape::TapeError) -> Refusal {
     use apt_ide::tape::TapeError;
     match error {
         TapeError::UnknownMachine { name, known } => Refusal::UnknownMachine { name, known },
+        TapeError::Definition { .. } => Refusal::Impossible(error.to_string()),
         TapeError::Cancelled(_) => Refusal::Interrupted,
     }
 }

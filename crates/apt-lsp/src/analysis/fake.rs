@@ -43,6 +43,10 @@ impl Language for FakeLanguage {
         vec![MachineInfo { name: "toy".into(), title: "A toy".into(), control: "none".into() }]
     }
 
+    fn machine_definition(&self, name: &str) -> Result<String, Refusal> {
+        Engine.machine_definition(name)
+    }
+
     fn has_machine(&self, name: &str) -> bool {
         self.machines().iter().any(|machine| machine.name == name)
     }

@@ -37,6 +37,9 @@ pub(crate) trait Language: Send + Sync + 'static {
     /// The machines a tape can be made for.
     fn machines(&self) -> Vec<MachineInfo>;
 
+    /// The definition file of one of them.
+    fn machine_definition(&self, name: &str) -> Result<String, Refusal>;
+
     /// Whether there is a machine of this name, be it its own or one that programs give it.
     fn has_machine(&self, name: &str) -> bool;
 

@@ -69,7 +69,15 @@ pub(super) enum Command {
     /// The syntax tree of a program
     Tree(ProgramArgument),
     /// The machines that a tape can be made for
-    Machines,
+    Machines(MachinesCall),
+}
+
+/// Machines.
+#[derive(Debug, Args)]
+pub(super) struct MachinesCall {
+    /// Print the definition of this one, to make another one of it
+    #[arg(value_name = "NAME")]
+    pub name: Option<String>,
 }
 
 /// A program and how to read it.
@@ -196,7 +204,7 @@ pub(super) struct PostCall {
     pub file: Option<PathBuf>,
     #[command(flatten)]
     pub reading: ReadingOptions,
-    /// The machine (default: project file, then MACHIN of the program)
+    /// The machine, or a definition file (.toml) of one (default: project file, then MACHIN of the program)
     #[arg(long, value_name = "NAME")]
     pub machine: Option<String>,
     /// Print the machines there are

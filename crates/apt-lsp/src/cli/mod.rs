@@ -113,6 +113,6 @@ fn dispatch(arguments: Arguments, console: &Console, language: &dyn Language) ->
         Some(Command::Convert(call)) => convert::convert(&call, console, language),
         Some(Command::Explain(call)) => explain::explain(&call.code, console, language),
         Some(Command::Tree(call)) => tree::tree(&call, console, language),
-        Some(Command::Machines) => post::list_machines(console, language),
+        Some(Command::Machines(call)) => post::machines(&call, console, language),
     }
 }

@@ -3,11 +3,11 @@
 use serde_json::Value;
 
 use super::Outcome;
-use super::arguments::{PostCall, ProgramArgument, Punch};
+use super::arguments::{MachinesCall, PostCall, ProgramArgument, Punch};
 use super::console::Console;
 use super::findings::{self, Checked};
 use super::program::Program;
-use crate::analysis::{Language, Product, Refusal, TapeCode, length_inches};
+use crate::analysis::{DEFINITION_ENDING, Language, Product, Refusal, TapeCode, length_inches};
 
 /// In which lengths of tape are told.
 const INCHES_PER_FOOT: f64 = 12.0;
@@ -23,7 +23,7 @@ pub(super) fn post(call: &PostCall, console: &Console, language: &dyn Language) 
     let Some(program) = Program::read(&argument, console, language) else { return Outcome::Unusable };
     let of_settings = program.settings.program.get("machine").and_then(Value::as_str).map(str::to_owned);
     let (control, bar) = console.control(&program.name);
-    let both = match call.machine.clone().or(of_settings) {
+    let both = match call.machine.as_deref().map(typed_machine).or(of_settings) {
         Some(machine) => Ok(Some(machine)),
         None => program.document.machine_of_program(&control).map_err(Refusal::from),
     };
@@ -64,8 +64,26 @@ fn code(punch: Punch) -> TapeCode {
     }
 }
 
+/// Prints the machines, or the definition of one.
+pub(super) fn machines(call: &MachinesCall, console: &Console, language: &dyn Language) -> Outcome {
+    let Some(name) = &call.name else { return list_machines(console, language) };
+    match language.machine_definition(name) {
+        Ok(definition) => console.print(&definition),
+        Err(refusal) => {
+            console.error(&refusal.to_string());
+            Outcome::Unusable
+        }
+    }
+}
+
+/// A machine as it was typed: the path of a definition file begins where the shell is.
+fn typed_machine(name: &str) -> String {
+    let whole = std::path::absolute(name).ok().filter(|_| name.ends_with(DEFINITION_ENDING));
+    whole.map_or_else(|| name.to_owned(), |path| path.to_string_lossy().into_owned())
+}
+
 /// Prints the machines, one per line.
-pub(super) fn list_machines(console: &Console, language: &dyn Language) -> Outcome {
+fn list_machines(console: &Console, language: &dyn Language) -> Outcome {
     let line = |machine: crate::analysis::MachineInfo| {
         format!("{:<20} {} ({})\n", machine.name, machine.title, machine.control)
     };

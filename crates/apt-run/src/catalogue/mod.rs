@@ -469,12 +469,18 @@ fn put_in_order<T, K>(
 
 /// What is told when the settings name a machine that nobody knows, with the severities of the settings.
 pub fn unknown_machine(name: &str, known: &[String], settings: &Settings) -> Vec<Diagnostic> {
-    let wording = Wording {
-        code: "APT0894",
-        message: format!("the settings name the machine {name}, which is not known; no tape is checked"),
-        hint: Some(format!("the machines are {}", known.join(", "))),
-        apt3: None,
-    };
+    let message = format!("the settings name the machine {name}, which is not known; no tape is checked");
+    no_machine(message, format!("the machines are {}", known.join(", ")), settings)
+}
+
+/// What is told when the settings name a definition of a machine that cannot be used.
+pub fn unusable_machine(file: &str, why: &str, settings: &Settings) -> Vec<Diagnostic> {
+    let message = format!("the definition of the machine {file} cannot be used; no tape is checked");
+    no_machine(message, why.to_owned(), settings)
+}
+
+fn no_machine(message: String, hint: String, settings: &Settings) -> Vec<Diagnostic> {
+    let wording = Wording { code: "APT0894", message, hint: Some(hint), apt3: None };
     let mut diagnostic = Diagnostic {
         wording,
         severity: Severity::Warning,
