@@ -274,6 +274,24 @@ fn mistakes_are_reported_in_place() {
     );
 }
 
+/// As in a part program, words without parameters may stand before another statement on its line.
+#[test]
+fn a_word_before_a_statement_is_one_itself() {
+    let text = "RAPID,GOTO/1,2,3\nrapid , goto / 4,5,6\nCOOLNT/ON\nSTOP,RAPID,GOTO/7,8,9\n";
+    let (records, errors) = read_text(text);
+    assert_eq!(errors, vec![]);
+    let (divided, _) =
+        read_text("RAPID\nGOTO/1,2,3\nRAPID\nGOTO/4,5,6\nCOOLNT/ON\nSTOP\nRAPID\nGOTO/7,8,9\n");
+    let kinds = |records: &[ClRecord]| records.iter().map(|record| record.kind.clone()).collect::<Vec<_>>();
+    assert_eq!(kinds(&records), kinds(&divided));
+    let lines: Vec<u32> = records.iter().map(|record| record.source).collect();
+    assert_eq!(lines, [0, 0, 1, 1, 2, 3, 3, 3]);
+    // A motion along a surface is none that CL text can hold, and is told once.
+    let (_, errors) = read_text("TLON,GOFWD/C1,PAST,L1\n1,X\n");
+    let kinds: Vec<ReadErrorKind> = errors.into_iter().map(|error| error.kind).collect();
+    assert_eq!(kinds, [ReadErrorKind::NotRead { word: "TLON".into() }, ReadErrorKind::Unreadable]);
+}
+
 #[test]
 fn written_text() {
     let point =

@@ -211,7 +211,7 @@ impl Analysis {
         let mut found = self.program_diagnostics(level, cancel, progress)?;
         let sound = found.iter().all(|one| one.severity != Severity::Error);
         if level == Level::Motion && sound {
-            found.extend(self.machine_diagnostics(cancel, progress)?);
+            found.extend(self.tape_diagnostics(cancel, progress)?);
             found = catalogue::by_place(found, Waiting::until(cancel).patience())?;
         }
         Ok(found)
@@ -237,7 +237,7 @@ impl Analysis {
         // Errors are the gravest: if there are any, some are among these.
         let sound = worst.diagnostics.iter().all(|one| one.severity != Severity::Error);
         if level == Level::Motion && sound {
-            worst.diagnostics.extend(self.machine_diagnostics(cancel, progress)?);
+            worst.diagnostics.extend(self.tape_diagnostics(cancel, progress)?);
             let left_out = worst.left_out;
             let found = catalogue::by_place(worst.diagnostics, Waiting::until(cancel).patience())?;
             worst = Worst::of(found, most);

@@ -277,35 +277,43 @@ impl Analysis {
         }))
     }
 
-    /// What the post-processor finds for the machine of the settings, if they name one.
+    /// What a tape would lack: the statements of a CL file that say nothing to its reader, and what the post-processor finds
+    /// for the machine of the settings, if they name one.
     ///
     /// # Errors
     ///
     /// [`Cancelled`] when `cancel` said so before the end.
-    pub(crate) fn machine_diagnostics(
+    pub(crate) fn tape_diagnostics(
         &self,
         cancel: Cancel<'_>,
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Vec<Diagnostic>, Cancelled> {
         let settings = self.document().settings();
-        let Some(name) = settings.machine.as_deref() else { return Ok(Vec::new()) };
-        let machine = match self.machine(name) {
-            Ok(machine) => machine,
+        let is_read = self.document().dialect() == DialectName::Cl;
+        let Some(name) = settings.machine.as_deref() else {
+            return if is_read {
+                Ok(self.read_cutter_locations(cancel)?.diagnostics)
+            } else {
+                Ok(Vec::new())
+            };
+        };
+        // What there is to say about a program itself is told anyway.
+        let mut source = match is_read {
+            true => self.read_cutter_locations(cancel)?,
+            false => Source::of_run(self.result(cancel, progress)?, Vec::new()),
+        };
+        let no_machine = match self.machine(name) {
+            Ok(machine) => return Ok(self.tape_of(source, &machine, None, cancel)?.diagnostics),
             Err(TapeError::Definition { file, why }) => {
-                return Ok(catalogue::unusable_machine(&file.display().to_string(), &why, settings));
+                catalogue::unusable_machine(&file.display().to_string(), &why, settings)
             }
             Err(TapeError::UnknownMachine { known, .. }) => {
-                return Ok(catalogue::unknown_machine(name, &known, settings));
+                catalogue::unknown_machine(name, &known, settings)
             }
             Err(TapeError::Cancelled(cancelled)) => return Err(cancelled),
         };
-        let mut source = match self.document().dialect() {
-            DialectName::Cl => self.read_cutter_locations(cancel)?,
-            _ => Source::of_run(self.result(cancel, progress)?, Vec::new()),
-        };
-        // What there is to say about the program itself is told anyway.
-        source.diagnostics.clear();
-        Ok(self.tape_of(source, &machine, None, cancel)?.diagnostics)
+        source.diagnostics.extend(no_machine);
+        Ok(source.diagnostics)
     }
 
     /// The tape of some records, and what was found besides what is known already; what a code lacks, too, where one is given.

@@ -56,6 +56,32 @@ fn cl_files_and_binary_tapes_are_posted_as_they_stand() {
     assert_eq!((tape.code, tape.stdout), (0, ran.stdout));
 }
 
+/// What the reader of CL text cannot make a record of is missing on the tape: it is told before one is made.
+#[test]
+fn statements_that_say_nothing_to_the_reader_are_told_by_the_check() {
+    let folder = Folder::new("cl-check");
+    for (line, code) in [
+        ("GOTO/1,2", "APT0813"),
+        ("HELLO WORLD", "APT0810"),
+        ("UNITS/FURLONG", "APT0810"),
+        ("GOTO/0,0,0,0,0,2", "APT0815"),
+        ("CIRCLE/0,0,0,0,0,0,1", "APT0816"),
+    ] {
+        folder.write("odd.cl", CL.replace("GOTO/1,0,0", line));
+        for machine in ["", "machine = \"linuxcnc-mill3\"\n", "machine = \"none\"\n"] {
+            folder.write("apt-lsp.toml", machine);
+            let checked = folder.run(&["--check", "odd.cl"]);
+            assert_eq!(checked.stdout.matches(code).count(), 1, "{line} {machine:?}: {checked:?}");
+            let listed = folder.run(&["run", "odd.cl"]);
+            assert_eq!(listed.stderr.matches(code).count(), 1, "{line} {machine:?}: {listed:?}");
+        }
+    }
+    folder.write("apt-lsp.toml", "");
+    folder.write("good.cl", CL.replace("GOTO/1,0,0", "RAPID,GOTO/1,0,0"));
+    let checked = folder.run(&["--check", "--deny-warnings", "good.cl"]);
+    assert!(checked.code == 0 && checked.stdout.is_empty(), "{checked:?}");
+}
+
 /// In files of NCL DEEP breaks chips, in those of Creo it withdraws the drill.
 #[test]
 fn deep_holes_are_drilled_as_the_system_of_the_file_means_them() {

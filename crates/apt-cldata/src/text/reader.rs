@@ -13,7 +13,7 @@ use self::{
 use super::{
     detect::{ClDialect, detect},
     statements::{Statement, statements},
-    words::{Shape, shape},
+    words::{Shape, joined, shape},
 };
 use crate::{
     arc::Tolerance,
@@ -226,11 +226,21 @@ impl Reader {
             self.end_arc();
             return self.push(ClKind::Text { word: (*word).into(), code: None, text: text.as_str().into() });
         }
-        if let Some(driven) = driven(&statement.text) {
-            self.end_arc();
-            return self.driven_arc(driven);
+        let told = self.errors.len();
+        let mut text = statement.text.as_str();
+        loop {
+            if let Some(driven) = driven(text) {
+                self.end_arc();
+                return self.driven_arc(driven);
+            }
+            let Some((word, behind)) = joined(text) else { break };
+            self.major(&word, Vec::new());
+            if self.errors.len() > told {
+                return;
+            }
+            text = behind;
         }
-        match shape(&statement.text) {
+        match shape(text) {
             Shape::Blank => {}
             Shape::Numbers(numbers) => self.more_positions(&numbers),
             Shape::Major { word, arguments } => self.major(&word, arguments),

@@ -55,6 +55,13 @@ pub(crate) fn shape(text: &str) -> Shape {
     Shape::Unreadable
 }
 
+/// A word that stands before another statement on its line, as in `RAPID,GOTO/1,2,3`, and that statement.
+pub(crate) fn joined(text: &str) -> Option<(SmolStr, &str)> {
+    let (word, behind) = text.split_once(',')?;
+    let next = behind.split([',', '/']).next().unwrap_or_default();
+    (is_word(word.trim()) && is_word(next.trim())).then(|| (word.trim().to_ascii_uppercase().into(), behind))
+}
+
 /// Letters, digits and what stands between them in names of later systems; 2DCALC begins with a digit and is no number.
 fn is_word(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_alphanumeric())
