@@ -128,3 +128,31 @@ fn names_without_a_letter_in_common_are_not_alike() {
     let (_, hint, _) = first("BX=3\nGOTO/B,BX,0\nFINI\n");
     assert_eq!(hint.as_deref(), Some("did you mean BX?"));
 }
+
+/// A nested matrix is a matrix; what it lacks is a name.
+#[test]
+fn refsys_with_a_matrix_without_a_name_is_told_that_it_needs_one() {
+    let [told] = &found("REFSYS/(MATRIX/XYROT,90)\nREFSYS/NOMORE\nFINI\n")[..] else { panic!("one finding") };
+    assert_eq!(told.wording.code, "APT0333");
+    assert_eq!(told.wording.message, "REFSYS needs a matrix with a name");
+    assert!(told.wording.hint.as_ref().unwrap().contains("REFSYS/(M1=MATRIX/"), "{told:?}");
+    assert!(found("REFSYS/(M1=MATRIX/XYROT,90)\nREFSYS/NOMORE\nFINI\n").is_empty(), "as the hint has it");
+}
+
+/// Forms that differ in nothing that is said are told once.
+#[test]
+fn no_form_of_a_definition_is_told_twice() {
+    for word in [
+        "POINT", "LINE", "CIRCLE", "PLANE", "CYLNDR", "SPHERE", "CONE", "ELLIPS", "VECTOR", "MATRIX",
+        "GCONIC",
+    ] {
+        let all = found(&format!("A={word}/1\nB=A\nFINI\n"));
+        let hint = all.iter().find_map(|one| one.wording.hint.clone()).unwrap();
+        let mut forms: Vec<&str> =
+            hint.split("; ").map(|form| form.trim_start_matches("its forms are ")).collect();
+        let count = forms.len();
+        forms.sort_unstable();
+        forms.dedup();
+        assert_eq!(forms.len(), count, "{word}: {hint}");
+    }
+}

@@ -4,7 +4,7 @@ use apt_geometry::{
     canonical::GeometryKind,
     definition::{DefinitionError, Impossible, RuledFault, formats},
 };
-use apt_program::finding::{Expected, FindingKind as Kind};
+use apt_program::finding::{Expected, FindingKind as Kind, Found};
 
 use super::{Text, a_kind, names::found, number, say};
 
@@ -78,6 +78,10 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
         }
         Kind::ObtainLarge { kind } => {
             say("APT0332", format!("no numbers can be obtained from {}", a_kind(*kind)))
+        }
+        Kind::ReferenceSystem { found: Found::Geometry(GeometryKind::Matrix) } => {
+            say("APT0333", "REFSYS needs a matrix with a name".to_owned())
+                .hint("give it one here, as in REFSYS/(M1=MATRIX/…), or define it before")
         }
         Kind::ReferenceSystem { found: what } => {
             say("APT0333", format!("REFSYS needs a matrix, not {}", found(what)))
@@ -222,10 +226,16 @@ fn definition(kind: GeometryKind, error: &DefinitionError) -> Text {
 fn forms(kind: GeometryKind) -> Option<String> {
     /// More would not be read.
     const SHOWN: usize = 4;
-    let all = formats(kind);
-    let mut lines: Vec<_> = all.iter().take(SHOWN).map(|format| format.help.replace(';', ",")).collect();
-    if all.len() > SHOWN {
-        lines.push(format!("and {} more forms", all.len() - SHOWN));
+    let mut lines: Vec<String> = Vec::new();
+    for format in formats(kind) {
+        let line = format.help.replace(';', ",");
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+    }
+    if lines.len() > SHOWN {
+        let more = lines.split_off(SHOWN).len();
+        lines.push(format!("and {more} more {}", if more == 1 { "form" } else { "forms" }));
     }
     (!lines.is_empty()).then(|| format!("its forms are {}", lines.join("; ")))
 }
