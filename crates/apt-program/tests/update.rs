@@ -158,6 +158,24 @@ fn names_that_nobody_reads_are_known_after_every_edit() {
     }
 }
 
+/// Jumps back without end, up to the usual budget: what is compared with the evaluation before the edit is at each turn what
+/// it is at the first one.
+#[test]
+fn an_edit_in_a_program_that_jumps_back_without_end_costs_what_an_evaluation_costs() {
+    let text = "I=0\nA1)I=I+1\nA=I\nB=A\nC=B\nIF(-2)A1,A2,A2\nA2)GOTO/0,0,0\nFINI\n";
+    let tree = SyntaxTree::parse(text, Dialect::named(DialectName::Apt4));
+    let usual = Options::default();
+    let program = evaluate(&tree, &usual, &|| false);
+    let at = text.find("I+1").expect("the step") + 2;
+    let (tree, change) = edited(&tree, at, at + 1, "2");
+    let updated = program.update(&tree, &change, &usual, &|| false);
+    let fresh = evaluate(&tree, &usual, &|| false);
+    assert_eq!(updated.symbols(), fresh.symbols());
+    assert_eq!(updated.record_count(), fresh.record_count());
+    let findings = |program: &Program| program.findings().cloned().collect::<Vec<_>>();
+    assert_eq!(findings(&updated), findings(&fresh));
+}
+
 #[test]
 fn a_changed_value_reaches_everything_after_it() {
     let text = long_program(1_000);

@@ -173,6 +173,10 @@ fn run_chunk(
 /// Chunks that have moved are taken over in the middle of a program if there are at least this many.
 const LEAST_MOVED_STRETCH: usize = 16;
 
+/// Among so many of the next old chunks the one is looked for at which a new one ends: in a straight program it is the first
+/// or the second, in a loop of jumps one of a turn.
+const MOST_CHUNKS_AHEAD: usize = 64;
+
 /// Old chunks that can be taken over.
 struct Takeover {
     /// The first of them.
@@ -215,10 +219,13 @@ impl<'o> Reuse<'o> {
         }
     }
 
-    /// Where the next old chunk begins, in new indices.
+    /// Where the next old chunk begins, in new indices, if that is one of the next. Where the program jumps back over and over
+    /// all chunks that are left may begin before this place, and to look through them at each turn takes a time that grows
+    /// with the square of the turns.
     fn next_boundary(&self, index: usize) -> Option<usize> {
         let ahead = self.old.chunks[self.candidate.min(self.old.chunks.len())..].iter();
         ahead
+            .take(MOST_CHUNKS_AHEAD)
             .map(Chunk::start)
             .filter(|start| *start >= self.shift.from)
             .map(|start| self.shift.index(start))
