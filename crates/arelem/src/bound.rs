@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 use apt_geometry::{Vec3, patience::Patience, surface::Surface};
 
-use self::filled::{Filled, Limits};
+use self::filled::{Filled, Limits, WIDER, WIDER_ROUGHLY};
 pub(crate) use self::readings::{Piece, Reading, Readings};
 use crate::{
     clearance::{Shape, Tool},
@@ -125,7 +125,7 @@ const KEPT: usize = 3;
 impl Record {
     /// A path that begins at a position, and MAXDP.
     pub(crate) fn new(from: &Vec3, roles: [&Working; 2], maximum_step: f64) -> Self {
-        let limits = Limits::new(roles, maximum_step);
+        let limits = Limits::new(roles, maximum_step, WIDER);
         Self { settled: Bent::none(from), recent: VecDeque::with_capacity(KEPT), limits }
     }
 
@@ -201,7 +201,7 @@ fn bends(
     bent: &Bent,
     (maximum_step, earlier): (f64, Option<f64>),
 ) -> u32 {
-    let limits = Limits::new([&prepared.part, &prepared.drive], maximum_step);
+    let limits = Limits::new([&prepared.part, &prepared.drive], maximum_step, WIDER);
     let filled = to_end(prepared, path, bent.clone(), maximum_step).filled;
     let least = earlier.and_then(|earlier| filled.least(earlier));
     whole(least.unwrap_or_else(|| filled.count(&limits).ceil() - 1.0)).max(1)
@@ -243,7 +243,7 @@ const EARLIER: f64 = 2.0;
 /// path bends.
 pub(crate) fn to_end(prepared: &Prepared, path: &[Vec3], mut bent: Bent, maximum_step: f64) -> Bent {
     let roles = [&prepared.part, &prepared.drive];
-    let limits = Limits::new(roles, maximum_step);
+    let limits = Limits::new(roles, maximum_step, WIDER);
     // The end of a motion may leave out that position, or come before it.
     let met = path.iter().rposition(|tip| *tip == bent.to).unwrap_or(path.len().saturating_sub(2));
     let begin = bent.to;
@@ -258,7 +258,7 @@ pub(crate) fn to_end(prepared: &Prepared, path: &[Vec3], mut bent: Bent, maximum
 
 /// How many vectors a path needs that begins and ends where it does.
 pub(crate) fn needed(prepared: &Prepared, path: &[Vec3], bent: Bent, maximum_step: f64) -> u32 {
-    let limits = Limits::new([&prepared.part, &prepared.drive], maximum_step);
+    let limits = Limits::new([&prepared.part, &prepared.drive], maximum_step, WIDER);
     let bends = to_end(prepared, path, bent, maximum_step).filled.count(&limits);
     whole(bends).max(on_rings(prepared, path, 0.0))
 }
@@ -271,7 +271,7 @@ pub(crate) fn fills(
     patience: Patience<'_>,
 ) -> Option<Vec<f64>> {
     let roles = [&prepared.part, &prepared.drive];
-    let limits = Limits::new(roles, maximum_step);
+    let limits = Limits::new(roles, maximum_step, WIDER_ROUGHLY);
     let (mut filled, mut before) = (Filled::default(), 0.0);
     let of_vector = |pair: &[Vec3]| {
         let [part, drive] = roles.map(|role| read(&prepared.tool, role, [&pair[0], &pair[1]]));

@@ -8,7 +8,7 @@
 //! Nor may a vector begin anywhere in the band: it begins where the one before it ends, the first one where the motion does. Both are counted
 //! ([`strand`]), along the surface that a vector is full by alone, for of the other one it is not known where another vector would have come to.
 //!
-//! That holds of what bends as it was read: from clearances at few places of each vector, and along one path for all in the bands. The band is
+//! That holds of what bends as it was read: from clearances at few places of each vector, and along one path for all in the bands. The bands are
 //! taken to be wider for that by [`WIDER`], which dynamic programming has found to be enough (`fewest`) and nothing proves.
 
 #[cfg(test)]
@@ -21,30 +21,40 @@ use self::{steady::Turns, strand::Strand};
 use super::readings::Readings;
 use crate::role::Working;
 
-/// Share of the band by which it is taken to be wider than it is: clearances are read at few places of each vector, and where the bend changes
-/// between these a cubic tells them roughly. It leaves out a hundredth of all vectors.
-const WIDER: f64 = 0.02;
+/// Share of a band by which it is taken to be wider than it is for the least number of vectors: clearances are read at few places of each vector, between
+/// which a cubic tells them, and where a vector is full is found to a thousandth of it (`strand`), which is twice as much of what its square fills. It
+/// leaves out a thousandth of all vectors.
+pub(super) const WIDER: f64 = 0.002;
+/// The same for what each vector of a path fills, where fewer are looked for: it leaves out a hundredth, so that no stretch is passed over of which
+/// another one, elsewhere in the bands, may be gone along in fewer vectors.
+pub(super) const WIDER_ROUGHLY: f64 = 0.02;
 
 /// How wide a band is for a vector; `None` of one without width, which belongs to what does not bend, or no vector would have been proven.
 fn room([low, high]: [f64; 2]) -> Option<f64> {
-    (high > low).then_some((high - low) * (1.0 + WIDER))
+    (high > low).then_some(high - low)
+}
+
+/// A band that is wider by a share, on both sides.
+fn widened([low, high]: [f64; 2], share: f64) -> [f64; 2] {
+    let more = 0.5 * share * (high - low);
+    [low - more, high + more]
 }
 
 /// What a vector is to keep.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
-    /// The clearances at both limits of the band, for part and drive surface.
+    /// The clearances at both limits of the widened band, for part and drive surface.
     bands: [[f64; 2]; 2],
     /// The way beside one vector, from its one end to the other.
     longest: f64,
 }
 
 impl Limits {
-    /// Those of both roles, and MAXDP.
-    pub(super) fn new(roles: [&Working; 2], maximum_step: f64) -> Self {
+    /// Those of both roles, wider by a share, and MAXDP.
+    pub(super) fn new(roles: [&Working; 2], maximum_step: f64, wider: f64) -> Self {
         // The way beside one vector, from its one end to the other within the bands, may be longer by that.
         let longest = maximum_step + 2.0 * (roles[0].band() + roles[1].band());
-        Self { bands: roles.map(|role| [-role.inside, role.outside]), longest }
+        Self { bands: roles.map(|role| widened([-role.inside, role.outside], wider)), longest }
     }
 }
 
@@ -159,7 +169,7 @@ mod tests {
     #[test]
     fn a_parabola_fills_its_integral() {
         let parabola = |x: f64| [0.5 * x * x, x];
-        let full = (8.0 * BAND * (1.0 + WIDER)).sqrt();
+        let full = (8.0 * BAND).sqrt();
         for vectors in [10, 13, 40, 97] {
             let found = count(&along(parabola, &places(vectors, 9.7 * full), &[0.5]), &LIMITS);
             assert!((found - 9.7).abs() < 0.06, "{vectors}: {found}");
@@ -172,7 +182,7 @@ mod tests {
     #[test]
     fn a_vector_that_bends_both_ways_covers_more_than_its_integral() {
         let cubic = |x: f64| [-x * x * x, -3.0 * x * x];
-        let longest = 2.0 * (2.0 * BAND * (1.0 + WIDER)).cbrt();
+        let longest = 2.0 * (2.0 * BAND).cbrt();
         for (share, whole) in [(0.98, 1.0), (1.05, 3.0)] {
             let ends: Vec<f64> =
                 places(12, share * longest).iter().map(|x| x - 0.5 * share * longest).collect();

@@ -9,7 +9,6 @@
 
 use super::{
     super::readings::Readings,
-    WIDER,
     hull::{Point, Widest, chain, lengthen, widest, widest_from},
     room,
     steady::{Steady, Turns, share_of},
@@ -73,10 +72,9 @@ impl Strand {
     /// From where a motion begins.
     pub(super) fn from_start(readings: &Readings, [low, high]: [f64; 2]) -> Self {
         let value = readings.at(0.0).value;
-        let more = 0.5 * WIDER * (high - low);
         let start = (high > low).then(|| {
             let value = value.clamp(low, high);
-            [value - low + more, high - value + more]
+            [value - low, high - value]
         });
         Self { steady: start.is_none().then(Steady::default), start, ..Self::anywhere() }
     }

@@ -43,8 +43,10 @@ const LEAST_ONWARD: f64 = 0.5;
 /// Share of MAXDP that a vector's length may be above it by rounding.
 const ROUNDING: f64 = 1e-9;
 /// Share by which what vectors fill may be read too great. A full one is read to fill a hundredth less than one, as bands are taken to be a fiftieth wider
-/// for the least number of vectors.
+/// for that.
 const MISREAD: f64 = 0.01;
+/// Vectors fewer than are needed along a path that others may need elsewhere in the bands: one of a stretch that just bends too much for one may be spared.
+const ELSEWHERE: f64 = 1.0;
 
 #[cfg(test)]
 thread_local! {
@@ -100,7 +102,8 @@ impl March<'_> {
         }
         let most = self.state.maximum_step;
         // Few motions are wasteful, and the others are not copied for it.
-        if !self.is_wasteful(f64::from(bound::needed(self.prepared, path, bent.clone(), most))) {
+        let needed = f64::from(bound::needed(self.prepared, path, bent.clone(), most));
+        if !self.is_wasteful(needed * (1.0 - MISREAD) - ELSEWHERE) {
             return Ok(());
         }
         let before = self.points.clone();
