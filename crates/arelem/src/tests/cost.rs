@@ -8,7 +8,11 @@ use apt_geometry::{
     motion::ToolAxis,
 };
 
-use super::{sheets::twisted_to, turning::waves_across, *};
+use super::{
+    sheets::{ruled, twisted_to},
+    turning::waves_across,
+    *,
+};
 use crate::{
     clearance::{BOXES, EVALUATIONS, FLOORS, JUDGED, STEPS},
     verify::{
@@ -410,6 +414,26 @@ fn the_verifier_looks_at_little_where_contact_jumps_on_a_twisted_strip() {
     let before = WORK.get();
     let evidence = verify(p.last(), &|| WORK.get() - before > STRIP_WORK).expect("evidence");
     assert!(evidence.verified, "{evidence:?}");
+}
+
+/// Distances and parts of a surface that the verifier may look at for each vector of a line along the hollow of a saddle.
+const LINE_WORK: u64 = 2_000;
+
+/// Along its hollow a saddle falls away from a line across the way alone: the readings at the ends of a vector show all of it.
+#[test]
+fn the_verifier_looks_at_little_where_a_line_goes_along_the_hollow_of_a_saddle() {
+    let place = |c: f64, t: f64| v(0.5 * (t + c), -0.05 * c * t, 0.5 * (t - c));
+    let curve = |c: f64| (plane(1.0, 0.0, -1.0, c), place(c, -6.0), place(c, 6.0), v(1.0, 0.0, -1.0));
+    let wall = ruled([curve(-4.0), curve(4.0)]);
+    let mut p = Program::new();
+    p.tolerance(2e-5, 0.0).cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0]).from(-2.0, -1.0, -0.8);
+    p.go(&[(Relation::To, &wall), (Relation::On, &level(-1.0)), (Relation::On, &x(-2.0))]);
+    p.indirv(1.0, 0.0, 0.0).side(DriveSide::Right).drive(Turn::Forward, &wall, Relation::On, &x(2.0));
+    let before = WORK.get();
+    let evidence = verify(p.last(), &|| false).expect("evidence");
+    assert!(evidence.verified, "{evidence:?}");
+    let each = (WORK.get() - before) / p.last().points.len() as u64;
+    assert!(each <= LINE_WORK, "{each} for each of {}", p.last().points.len());
 }
 
 /// Proven clearances that a start-up without a position may ask for.

@@ -20,6 +20,7 @@ use super::{
     ruling_clearance::{self, Ruled},
     sculptured::SculpturedStrips,
     span::Bend,
+    survey::Passage,
     tool::{Profile, Tool},
 };
 
@@ -334,6 +335,29 @@ impl<'a> Clearance<'a> {
         let depth = (0.5 * travel - least).max(0.0);
         let hill = self.surface.hill(self.side, &tips[0], &tool, [most + 1.5 * travel, enough])?;
         Bend::over(hill, depth)
+    }
+
+    /// How fast its slope grows on a vector, by the parameter from 0 to 1 and as closely as is enough: from the position half way, the way and
+    /// how far the axis turns, and between which values it is. None where that is
+    /// not known any closer.
+    pub(super) fn bend_on(
+        &self,
+        middle: &ToolPosition,
+        (way, round): (Vec3, Vec3),
+        values: [f64; 2],
+        is_enough: impl Fn(f64) -> bool,
+    ) -> Option<f64> {
+        let Surface::Ruled(surface) = self.surface else { return None };
+        let surface =
+            if self.profile.is_point() { surface } else { surface.met_from(self.side, self.patience) };
+        let tool = self.tool(middle.axis);
+        let tip = middle.tip + middle.axis * self.raise;
+        let values = values.map(|value| value + self.thickness);
+        surface.bend_on(
+            self.side,
+            &Passage { tool: &tool, tip, raise: self.raise, way, round, values },
+            is_enough,
+        )
     }
 
     /// The clearance with the tool end at `tip` and the axis `axis`; None where no distance exists (a surface without real

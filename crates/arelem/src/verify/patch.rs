@@ -1,5 +1,7 @@
 //! Patches of surface that are cubic both ways, and bounds of how they bend.
 
+pub(super) mod along;
+
 use apt_geometry::Vec3;
 
 use super::strip::{Cubic, lerp};
@@ -382,7 +384,7 @@ mod tests {
 
     use super::*;
 
-    fn bumps() -> impl Strategy<Value = Net> {
+    pub(super) fn bumps() -> impl Strategy<Value = Net> {
         proptest::collection::vec(-0.2..0.2f64, 48).prop_map(|r| {
             std::array::from_fn(|j| {
                 std::array::from_fn(|i| {

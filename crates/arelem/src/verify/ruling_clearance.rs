@@ -23,7 +23,7 @@ use super::{
     sculptured::SculpturedStrips,
     span::Bend,
     strip::{Touch, nearest},
-    survey::{Accuracy, Sheet},
+    survey::{Accuracy, Passage, Sheet},
     tool::{Tool, perpendicular},
 };
 
@@ -114,6 +114,16 @@ impl Ruled {
             Self::Conics(surface) => surface.sheet.bend(side, from, tool, values, travel, surface.size),
             Self::Sculptured(surface) => surface.sheet.bend(side, from, tool, values, travel, surface.size),
         }
+    }
+
+    /// The same by the way of the tool, as closely as is enough, where the surface is of patches.
+    pub(super) fn bend_on(
+        &self,
+        side: f64,
+        passage: &Passage<'_>,
+        is_enough: impl Fn(f64) -> bool,
+    ) -> Option<f64> {
+        self.sheet()?.bend_on(side, passage, self.size(), is_enough)
     }
 
     fn sheet(&self) -> Option<&Sheet> {

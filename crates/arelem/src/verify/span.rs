@@ -36,7 +36,7 @@ const OPPOSITE: f64 = 1e-9;
 /// Step of the derivative with respect to the vector parameter when the tool axis turns.
 const TURN_STEP: f64 = 1e-5;
 /// Share of the radius of curvature that a tool may be too deep where the slope of a clearance is bounded.
-const DEEPEST: f64 = 0.5;
+pub(super) const DEEPEST: f64 = 0.5;
 
 /// Where the tool is between two positions of a vector, `t` from 0 to 1: the tool end goes straight and evenly, the axis
 /// turns evenly in the plane of both axes. A machine that moves otherwise between them is not judged. None for opposite axes.
@@ -358,6 +358,32 @@ impl Span<'_> {
         Some(Bend { rate, jumps: bend.jumps * travel, ..bend })
     }
 
+    /// The same bend, or a closer bound of it on a part of the vector where that leaves open whether the clearance is within the band there, from
+    /// the readings at both ends of it.
+    fn closer_bend(&self, ends: [Sample; 2], bend: Bend) -> Bend {
+        if bend.jumps > 0.0 || bend.rate <= 0.0 {
+            return bend;
+        }
+        let told = |rate: f64| bounds(ends, &Bend { rate, ..bend }, false);
+        let is_enough = |rate: f64| {
+            let told = told(rate);
+            self.is_within(told.low, told.high)
+        };
+        if is_enough(bend.rate) {
+            return bend;
+        }
+        let share = ends[1].t - ends[0].t;
+        let of_whole = |rate: f64| rate / (share * share);
+        let Extremes { low, high, .. } = told(bend.rate);
+        let middle = between(&self.from, &self.to, ends[0].t + 0.5 * share);
+        let found = middle.and_then(|middle| {
+            let [way, round] = [self.to.tip - self.from.tip, round(&self.from, &self.to)].map(|x| x * share);
+            let is_enough = |rate: f64| is_enough(of_whole(rate));
+            self.clearance.bend_on(&middle, (way, round), [low, high], is_enough)
+        });
+        found.map_or(bend, |rate| Bend { rate: bend.rate.min(of_whole(rate)), ..bend })
+    }
+
     /// Whether a bound of the bend tells something, for such a share of a vector: beside the tip of what is nearly a cone it does
     /// not.
     fn tells(&self, bend: &Bend, share: f64) -> bool {
@@ -371,11 +397,12 @@ impl Span<'_> {
     fn bent(&self, first: Sample, last: Sample, bend: Bend, tolerance: f64) -> Option<Extremes> {
         let is_left_once = bend.corners <= 1 && !self.turns();
         let mut found: Option<Extremes> = None;
-        let mut open = vec![(first, last, true)];
+        let mut open = vec![(first, last, bend, true)];
         let mut budget = FREE_EVALUATIONS;
-        while let Some((a, b, may_be_short)) = open.pop() {
-            let part = bounds([a, b], &bend, is_left_once);
+        while let Some((a, b, bend, may_be_short)) = open.pop() {
+            let bend = self.closer_bend([a, b], bend);
             let is_whole = b.t - a.t >= 1.0;
+            let part = bounds([a, b], &bend, is_left_once);
             let within = part.low >= self.band[0] && part.high <= self.band[1];
             // Where the slope changes its sign, an extreme is looked at once, unless nothing depends on it.
             let turn = a.t - a.slope * (b.t - a.t) / (b.slope - a.slope);
@@ -397,7 +424,7 @@ impl Span<'_> {
             let highest = crest([a, b], bend.rate).filter(|_| may_be_short && part.high > self.band[1]);
             let t = highest.unwrap_or(if is_whole && between { turn } else { half });
             let middle = self.sample(t)?;
-            open.extend([(middle, b, t >= half), (a, middle, t <= half)]);
+            open.extend([(middle, b, bend, t >= half), (a, middle, bend, t <= half)]);
         }
         found
     }

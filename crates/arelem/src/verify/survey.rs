@@ -1,5 +1,6 @@
 //! What of a surface of patches is near a tool: one survey serves until the tool has moved by its margin.
 
+mod closer;
 mod nearest;
 
 use std::{
@@ -9,6 +10,7 @@ use std::{
 
 use apt_geometry::Vec3;
 
+pub(super) use self::closer::Passage;
 use self::nearest::near;
 pub(super) use self::nearest::{nearest_by, nearest_to};
 use super::{

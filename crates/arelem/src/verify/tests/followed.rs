@@ -22,9 +22,9 @@ use super::{
 };
 use crate::sequence::ToolPosition;
 
-const BALL: [f64; 2] = [0.5, 0.25];
-const FLAT: [f64; 2] = [0.5, 0.0];
-const BULL: [f64; 2] = [0.5, 0.1];
+pub(super) const BALL: [f64; 2] = [0.5, 0.25];
+pub(super) const FLAT: [f64; 2] = [0.5, 0.0];
+pub(super) const BULL: [f64; 2] = [0.5, 0.1];
 const SEVEN: [f64; 7] = [0.6, 0.11, 0.2, 0.13, 10.0, 5.0, 4.0];
 
 fn saddle() -> Geometry {

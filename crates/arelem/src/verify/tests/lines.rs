@@ -28,7 +28,7 @@ const PLACES: usize = 600;
 /// Parts of a surface that may be looked at for one line.
 const FEW: u64 = 40_000;
 
-fn line(length: f64) -> Profile {
+pub(super) fn line(length: f64) -> Profile {
     Profile::of(&cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, length])).expect("a line")
 }
 

@@ -1,6 +1,7 @@
 //! Tests of the verifier against closed forms, dense sampling and deliberately broken sequences.
 
 mod barrels;
+mod bends;
 mod branches;
 pub(crate) mod clearances;
 mod depths;
