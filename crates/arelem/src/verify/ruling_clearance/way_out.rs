@@ -37,15 +37,16 @@ struct Way {
     depth: f64,
     /// A place of it is not less deep.
     known: f64,
-    /// Unit direction of the shortest.
+    /// Unit direction of the shortest, and how high up it was held by that.
     normal: Vec3,
+    height: f64,
     /// How high up it was held in the last two.
     held: [f64; 2],
 }
 
 impl Way {
     fn held(held: &Held, known: f64) -> Self {
-        Self { depth: held.least, known, normal: held.normal, held: [held.height; 2] }
+        Self { depth: held.least, known, normal: held.normal, height: held.height, held: [held.height; 2] }
     }
 
     /// What is known by another way, too.
@@ -107,7 +108,10 @@ impl Bodies<'_> {
             let (deepest, _) = depths.max_by(|a, b| a.1.total_cmp(&b.1))?;
             let part = open.swap_remove(deepest);
             match part.found {
-                Some(found) if found.error <= SURE * self.close() => return Some(Some(found)),
+                Some(found) if found.error <= SURE * self.close() => {
+                    let place = found.place.map(|place| place + self.tool.axis * part.heights[0]);
+                    return Some(Some(Reading { place, ..found }));
+                }
                 None if self.is_too_deep(tip, part.heights)? => return Some(None),
                 _ => {}
             }
@@ -128,12 +132,17 @@ impl Bodies<'_> {
         let [low, high] = heights;
         let middle = 0.5 * (low + high);
         if touch.value > touch.gap && self.is_on_side(touch)? {
-            let found = Some(Reading::new(touch.value, self.away(touch)?, touch.gap));
+            let reading = Reading::new(touch.value, self.away(touch)?, touch.gap);
+            let found = Some(Reading { place: Some(touch.opposite() - tip), ..reading });
             return Some(Part { heights, found, cut: middle });
         }
         let through = self.led_out(tip, self.away(touch)?, ASTRAY * self.deep)?;
         let past = self.led_past_end(tip, through.map_or(self.deep, |way| way.depth))?;
-        let found = past.or(through.map(|way| Reading::new(-way.depth, way.normal, way.depth - way.known)));
+        let through_by = |way: Way| Reading {
+            place: Some(self.tool.axis * way.height),
+            ..Reading::new(-way.depth, way.normal, way.depth - way.known)
+        };
+        let found = past.or(through.map(through_by));
         let between = through.map_or(middle, |way| low + 0.5 * (way.held[0] + way.held[1]));
         let least = LEAST_SHARE * (high - low);
         let cut = if between > low + least && between < high - least { between } else { middle };

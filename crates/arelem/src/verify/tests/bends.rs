@@ -4,13 +4,16 @@ use super::{
     super::{
         clearance::{Clearance, Reading, Surface},
         span::{between, round, turning},
-        tool::Profile,
+        tool::{Profile, WORK},
+        verify,
     },
     followed::{BALL, BULL, FLAT},
     lines::line,
     *,
 };
-use crate::sequence::ToolPosition;
+use apt_geometry::motion::DriveSide;
+
+use crate::sequence::{CutSequence, Stop, ToolPosition};
 
 /// Positions on a way.
 const STEPS: i32 = 40;
@@ -104,4 +107,47 @@ fn no_slope_grows_faster_than_is_told_of_a_way() {
         }
     }
     assert!(closer_by < 0.5 * looks, "{closer_by} of {looks}");
+}
+
+/// Parts of the surface that may be looked at for each vector of a line that turns.
+const TURNING_WORK: u64 = 600;
+
+/// A line that is through the surface tells where it touches that when it has been led out: how fast its clearance changes while it turns
+/// needs no readings beside that.
+#[test]
+fn a_line_that_turns_in_a_saddle_is_read_once_at_each_place() {
+    let surface = Surface::of(&saddle()).expect("a surface");
+    let (profile, allowed) = (line(2.0), 2e-5);
+    let clearance = Clearance { allowed, ..Clearance::new(&surface, &profile, -1.0) };
+    let places: Vec<ToolPosition> = (0..=10)
+        .map(|k| {
+            let x = 0.02 * f64::from(k);
+            let mut p = at(x, -0.5, [0.1 * x, 0.05, 1.0]);
+            for _ in 0..60 {
+                let Reading { value, normal, .. } = clearance.at(&p.tip, &p.axis).expect("a clearance");
+                p.tip -= normal * (value + 0.9 * allowed);
+            }
+            p
+        })
+        .collect();
+    let end = places[places.len() - 1].tip;
+    let stop = role(plane([1.0, 0.0, 0.0], end.x), Relation::On, -1.0, 1e-3, 1e-3);
+    let sequence = CutSequence {
+        start: places[0],
+        points: places[1..].to_vec(),
+        cutter: cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0]),
+        part: Some(role(saddle(), Relation::To, -1.0, allowed, allowed)),
+        drive: None,
+        stop: Some(Stop { role: stop, occurrence: 1, index: 0 }),
+        drive_side: DriveSide::On,
+        start_up: false,
+        forward: (end - places[0].tip).normalize(),
+        maximum_step: 10.0,
+        minimum: None,
+    };
+    let before = WORK.get();
+    let evidence = verify(&sequence, &|| false).expect("evidence");
+    assert!(evidence.verified, "{:?}", evidence.violations);
+    let each = (WORK.get() - before) / sequence.points.len() as u64;
+    assert!(each <= TURNING_WORK, "{each}");
 }

@@ -202,7 +202,9 @@ proptest! {
         }
         let (depth, _) = deepest(&surface, &tip, &axis, length);
         // What is under the surface by more comes out over the end of it by less.
-        let depth = depth.min(way_to_end(&geometry, &tip, &axis, length));
+        let past_end = way_to_end(&geometry, &tip, &axis, length);
+        let is_through = depth < past_end;
+        let depth = depth.min(past_end);
         prop_assume!(depth > 0.0 && depth < ALLOWED);
         let profile = line(length);
         let mut tool = Tool::new(&profile, axis);
@@ -212,5 +214,13 @@ proptest! {
         let error = found.error + 1e-9;
         prop_assert!((found.value + depth).abs() <= error, "{:?} {}", found, depth);
         prop_assert!(error < 2e-8 && WORK.get() < FEW, "{:?} {}", found, WORK.get());
+        // The place that is told is one of the line, and at the surface where that is led out.
+        prop_assert!(found.place.is_some() || !is_through, "{:?}", found);
+        if let Some(place) = found.place {
+            let height = axis.dot(&place);
+            prop_assert!((place - axis * height).norm() < 1e-12 && (-1e-9..=length + 1e-9).contains(&height), "{height}");
+            let (left, _) = surface.point_distance(&(tip + place - found.normal * found.value)).expect("a distance");
+            prop_assert!(left.abs() < 2e-8, "{left} {:?}", found);
+        }
     }
 }
