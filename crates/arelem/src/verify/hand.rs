@@ -28,6 +28,8 @@ pub(super) struct Hand {
     normals: Option<[Vec3; 2]>,
     /// The same before a corner, while vectors lead straight on in that, within the bands.
     left: Option<[Vec3; 2]>,
+    /// The sign along a whole vector, at both its ends: what a direction or a corner tells is none before.
+    shown: Option<f64>,
 }
 
 /// Where a contact leaps beside a vertex.
@@ -79,6 +81,22 @@ impl Hand {
     /// Whether vectors have led straight on beyond a corner.
     pub(super) fn is_beyond_corner(&self) -> bool {
         self.left.is_some()
+    }
+
+    /// Part and drive normal of the walls before a corner, while vectors lead straight on in that.
+    pub(super) fn walls_of_corner(&self) -> Option<&[Vec3; 2]> {
+        self.left.as_ref()
+    }
+
+    /// Goes on along a vector with the normals at both ends: the cosine between it and the path on the hand that whole vectors have shown, where both
+    /// tell that it leads against that.
+    pub(super) fn against(&mut self, ends: &[[Vec3; 2]; 2], direction: &Vec3) -> Option<f64> {
+        let cosines = ends.each_ref().map(|normals| self.along(normals).map(|along| along.dot(direction)));
+        let [Some(begin), Some(end)] = cosines else { return None };
+        if begin > 0.0 && end > 0.0 {
+            self.shown = self.sign;
+        }
+        Some(begin.max(end)).filter(|cosine| *cosine < 0.0 && self.shown.is_some() && self.shown == self.sign)
     }
 
     /// Whether it is the hand that normals tell with a motion.

@@ -501,6 +501,11 @@ impl Judge<'_> {
                     hand.follow(followed, &begins, |hand| {
                         self.keeps_hand_before(hand, [part, drive], vector)
                     });
+                    if let Some(cosine) =
+                        self.crosses_over(&mut hand, [part, drive], vector, &[normals, at_end])
+                    {
+                        sine = sine.min(cosine);
+                    }
                 }
             }
             if sine <= 0.0 {

@@ -13,6 +13,8 @@ use crate::sequence::ToolPosition;
 
 /// How many vectors are looked at for the way that led to a corner: before it some are short, for a vertex has to lie in it.
 const MOST_VECTORS_BACK: usize = 8;
+/// By how many bands a tool in its band is moved towards a wall to be too deep in it, if it is there, by one of them.
+const INTO_WALL: f64 = 2.0;
 /// Halvings of a vector for the place on it where a contact leaps.
 const LEAP_HALVINGS: u32 = 30;
 /// Cosine between the directions of the path on both sides of that below which they are two but for rounding.
@@ -40,6 +42,29 @@ impl Judge<'_> {
             hand.is_told_by(&[part, drive], &(to.tip - from.tip))
         };
         from.axis == to.axis && is_on_hand(before) && (is_on_hand(vector) || self.leaps_on(roles, before))
+    }
+
+    /// The cosine between a vector and the path on the hand that was kept, where the path has crossed over to the other hand: what leads straight on in a
+    /// corner is beside the wall that it came along all the same, or else it goes along the other wall with that on the wrong side, as beyond the vertex
+    /// of a double cone.
+    pub(super) fn crosses_over(
+        &self,
+        hand: &mut Hand,
+        roles: [&Bound<'_>; 2],
+        vector: usize,
+        ends: &[[Vec3; 2]; 2],
+    ) -> Option<f64> {
+        let (from, to) = (&self.positions[vector], &self.positions[vector + 1]);
+        let cosine = hand.against(ends, &(to.tip - from.tip).normalize())?;
+        let walls = hand.walls_of_corner()?;
+        let is_gone = |(role, normal): (&Bound<'_>, &Vec3)| {
+            let deeper = INTO_WALL * (role.intol + role.outtol + self.guard());
+            let reading = role.clearance().at(&(to.tip - normal * deeper), &to.axis);
+            reading.is_some_and(|read| read.value - read.error > -role.intol)
+        };
+        let mut of_sides = roles.into_iter().zip(walls).filter(|(role, _)| !role.on);
+        let is_crossed = from.axis == to.axis && of_sides.any(is_gone);
+        is_crossed.then_some(cosine)
     }
 
     /// Whether a contact leaps on a vector of a tool that does not turn, where the path turns by more than a right angle: however near to each other its

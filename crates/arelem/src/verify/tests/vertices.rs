@@ -11,7 +11,7 @@ use super::{
     clearances::{clearance, direction, tools},
     cone, cutter,
     paths::{self, BAND},
-    plane, role,
+    plane, quadric, role,
 };
 use crate::sequence::CutSequence;
 
@@ -152,5 +152,25 @@ fn the_better_of_two_planes_beside_a_rim_is_found() {
         });
         let best = best.fold(f64::NEG_INFINITY, f64::max);
         assert!(value >= best - 1e-9 && value < best + 1e-6, "{share}: {value} but {best}");
+    }
+}
+
+/// A line along one half of a double cone to its vertex, and from there along the other half: on the same hand, or straight on with that on the
+/// wrong side, within the bands all the way.
+#[test]
+fn a_path_that_crosses_over_beyond_the_vertex_of_a_double_cone_is_not_proven() {
+    // x² = y² + z², whose halves are on both sides of the vertex along x.
+    let double_cone = quadric([-1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let drive = role(double_cone, Relation::To, 1.0, BAND.0, BAND.1);
+    let part = role(plane([0.0, 0.0, 1.0], 0.0), Relation::On, 1.0, BAND.0, BAND.1);
+    for (beyond, broken) in [(1.0, vec![]), (-1.0, vec![Rule::Progress])] {
+        let place = |x: f64| Vec3::new(x, if x > 0.0 { beyond * x } else { -x } + 0.3 * BAND.1, 0.0);
+        let tips = [-1.0, -0.5, -0.01 * BAND.1, 0.5, 1.0].map(place);
+        let stop = paths::end_plane(&tips, (tips[4] - tips[3]).normalize());
+        let line = cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        let path = paths::sequence(&tips, line, part.clone(), drive.clone(), stop, DriveSide::Left);
+        let evidence = verify(&path, &|| false).unwrap();
+        let found: Vec<Rule> = evidence.violations.iter().map(|violation| violation.rule).collect();
+        assert_eq!(found, broken, "{evidence:?}");
     }
 }
