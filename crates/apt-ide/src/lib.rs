@@ -58,6 +58,8 @@ pub struct Analysis {
     files: Arc<OnceLock<Vec<files::ProgramFile>>>,
     evaluating: Arc<turn::Turn>,
     running: Arc<turn::Turn>,
+    /// What the reader of CL files has told of the text.
+    read_findings: Arc<OnceLock<Vec<Diagnostic>>>,
     /// The evaluation of the last version before this one that was evaluated.
     before: Option<Arc<Program>>,
 }
@@ -95,6 +97,7 @@ impl Analysis {
             files: Arc::default(),
             evaluating: Arc::default(),
             running: Arc::default(),
+            read_findings: Arc::default(),
             before: None,
         }
     }

@@ -11,7 +11,8 @@ use apt_cldata::{
     codes::CodeTable,
     record::ClRecord,
     text::{
-        ClDialect, ClText, Remark, Shortened, detect, read_with_remarks_until, write_text_with_lines_until,
+        ClDialect, ClText, ReadError, Remark, Shortened, detect, read_with_remarks_until,
+        write_text_with_lines_until,
     },
 };
 use apt_geometry::{
@@ -291,11 +292,7 @@ impl Analysis {
         let settings = self.document().settings();
         let is_read = self.document().dialect() == DialectName::Cl;
         let Some(name) = settings.machine.as_deref() else {
-            return if is_read {
-                Ok(self.read_cutter_locations(cancel)?.diagnostics)
-            } else {
-                Ok(Vec::new())
-            };
+            return if is_read { self.read_diagnostics(cancel) } else { Ok(Vec::new()) };
         };
         // What there is to say about a program itself is told anyway.
         let mut source = match is_read {
@@ -369,6 +366,34 @@ impl Analysis {
         Ok(Source::of_run(self.result(cancel, progress)?, diagnostics))
     }
 
+    /// What the reader tells of the text as CL text. It is read once for a version, and what was told is kept; the records are
+    /// not, for they would double what an open file takes.
+    fn read_diagnostics(&self, cancel: Cancel<'_>) -> Result<Vec<Diagnostic>, Cancelled> {
+        if let Some(told) = self.read_findings.get() {
+            return Ok(told.clone());
+        }
+        let text = self.text();
+        let waiting = Waiting::until(cancel);
+        let patience = waiting.patience();
+        let (read, errors) = read_with_remarks_until(&text, patience).ok_or(Cancelled)?;
+        let records = read.records.len();
+        put_away(read, records);
+        let told = match errors.is_empty() {
+            true => Vec::new(),
+            false => self.read_errors(&errors, &self.origins_of_lines(&text, patience)?, patience)?,
+        };
+        Ok(self.read_findings.get_or_init(|| told).clone())
+    }
+
+    fn read_errors(
+        &self,
+        errors: &[ReadError],
+        origins: &[Origin],
+        patience: Patience<'_>,
+    ) -> Result<Vec<Diagnostic>, Cancelled> {
+        catalogue::read_diagnostics(errors, origins, self.document().settings(), patience)
+    }
+
     /// Reads the text as CL text. Statements are numbered as the syntax numbers them, by the line they begin on.
     pub(crate) fn read_cutter_locations(&self, cancel: Cancel<'_>) -> Result<Source, Cancelled> {
         let text = self.text();
@@ -383,8 +408,7 @@ impl Analysis {
             }
             go_on(patience, usize::from(done % RECORDS_A_UNIT == RECORDS_A_UNIT - 1))?;
         }
-        let settings = self.document().settings();
-        let diagnostics = catalogue::read_diagnostics(&errors, &origins, settings, patience)?;
+        let diagnostics = self.read_errors(&errors, &origins, patience)?;
         let records = Arc::new(Records::Read { records, origins });
         Ok(Source { records, remarks, shortened, diagnostics })
     }
