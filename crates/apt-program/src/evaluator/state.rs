@@ -6,6 +6,8 @@ use apt_geometry::{canonical::Plane, definition::ParametricPlace, motion::DriveS
 use smol_str::SmolStr;
 
 use crate::{
+    Origin,
+    finding::RelatedKind,
     statements::RegionalState,
     symbols::{ReferenceSystem, Symbol, SymbolTable},
 };
@@ -48,6 +50,8 @@ pub(crate) struct State {
     pub(crate) regional: Arc<RegionalState>,
     /// The place that the last INTOF of a space curve or a sculptured surface has found.
     pub(crate) intersection: Option<Arc<ParametricPlace>>,
+    /// The loop or macro of the program that is still open where its text ends, and where it begins.
+    pub(crate) open_region: Option<(RelatedKind, Origin)>,
     /// FINI has been executed.
     pub(crate) ended: bool,
 }
@@ -81,6 +85,7 @@ impl Default for State {
             library_calls: imbl::OrdSet::new(),
             regional: Arc::default(),
             intersection: None,
+            open_region: None,
             ended: false,
         }
     }

@@ -364,11 +364,18 @@ impl Evaluator<'_> {
                 return (block, index);
             }
         }
-        let finding = match macro_name {
-            Some(name) => FindingKind::Control(ControlFinding::MacroNotClosed { name: name.text.clone() }),
-            None => FindingKind::Control(ControlFinding::LoopNotClosed),
+        let (finding, opened) = match macro_name {
+            Some(name) => {
+                let finding = ControlFinding::MacroNotClosed { name: name.text.clone() };
+                (finding, (RelatedKind::Macro, self.origin(name.range)))
+            }
+            None => (ControlFinding::LoopNotClosed, (RelatedKind::Loop, self.origin(range))),
         };
-        self.report(finding, range);
+        self.report(FindingKind::Control(finding), range);
+        // A file ends before the program that includes it.
+        if self.here.source.is_none() {
+            self.state.open_region = Some(opened);
+        }
         self.settle_branches(&mut block, branches);
         (block, count)
     }
@@ -572,7 +579,8 @@ impl Evaluator<'_> {
         let stands_somewhere = self.dialect.branch_anywhere
             && (0..=last).any(|at| blocks::single_word(&tree.statement(at).parsed()) == Some("FINI"));
         if !stands_somewhere {
-            self.report(FindingKind::EndMissing, range);
+            let open_region = self.state.open_region.clone();
+            self.report_related(FindingKind::EndMissing, range, open_region.into_iter().collect());
         }
         self.emit(RecordKind::End, range);
         self.state.ended = true;

@@ -48,6 +48,8 @@ pub(crate) fn of_finding(tree: &SyntaxTree, finding: &Finding, settings: &Settin
             here.misspelt(parameter, &similar_names(parameter, known.iter().map(SmolStr::as_str)))
         }
         FindingKind::Unused { name } => here.unused(name).into_iter().collect(),
+        // In a loop or macro that is still open it would be wrong: that is closed first.
+        FindingKind::EndMissing if !finding.related.is_empty() => Vec::new(),
         FindingKind::EndMissing => block::end_of_program(tree).into_iter().collect(),
         FindingKind::Control(ControlFinding::MacroNotClosed { .. }) => {
             block::end_of_block(tree, index, "TERMAC").into_iter().collect()

@@ -63,6 +63,10 @@ fn each_finding_has_its_fixes() {
         ("APT0040", "A=(2+3),(4+5)\nFINI\n", &[]),
         ("APT0901", "GOTO/1,2,3", &[("Add FINI", "GOTO/1,2,3\nFINI\n")]),
         ("APT0901", "GOTO/1,2,3\r\n", &[("Add FINI", "GOTO/1,2,3\r\nFINI\r\n")]),
+        // FINI in an open loop or macro is wrong.
+        ("APT0901", "LOOPST\nGOTO/0,0,0\n", &[]),
+        ("APT0901", "M=MACRO/A\nGOTO/A,0,0\n", &[]),
+        ("APT0901", "LOOPST\nGOTO/0,0,0\nLOOPND\n", &[("Add FINI", "LOOPST\nGOTO/0,0,0\nLOOPND\nFINI\n")]),
         (
             "APT0423",
             "M=MACRO/A\nGOTO/A,0,0\nFINI\n",
