@@ -296,6 +296,40 @@ fn a_reader_who_has_seen_enough_is_no_fault() {
     assert!(!told.contains("panicked"), "{told}");
 }
 
+/// A file is written whole or not at all, wherever the disk is full.
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_written_whole_leaves_the_old_file() {
+    let folder = Folder::new("full");
+    let long = GOOD.replace("FINI", &format!("{}FINI", "GOTO/1,2,3\n".repeat(1000)));
+    folder.write("long.apt", long);
+    let limited = |name: &str| {
+        let script = format!("trap '' XFSZ; ulimit -f 1; exec \"$0\" run long.apt --format cl -o {name}");
+        let output = std::process::Command::new("sh")
+            .args(["-c", &script, env!("CARGO_BIN_EXE_apt-lsp")])
+            .current_dir(&folder.0)
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && told.contains(&format!("{name}: ")), "{told}");
+    };
+    folder.write("old.cl", "OLD\n");
+    std::os::unix::fs::symlink("old.cl", folder.0.join("link.cl")).unwrap();
+    for name in ["old.cl", "link.cl", "new.cl"] {
+        limited(name);
+        assert_eq!(std::fs::read_to_string(folder.0.join("old.cl")).unwrap(), "OLD\n", "{name}");
+    }
+    let names = std::fs::read_dir(&folder.0).unwrap().map(|one| one.unwrap().file_name());
+    let mut names: Vec<_> = names.map(|name| name.into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, ["link.cl", "long.apt", "old.cl"], "nothing is left beside them");
+    assert_eq!(folder.run(&["run", "long.apt", "--format", "cl", "-o", "link.cl"]).code, 0);
+    assert!(std::fs::read_to_string(folder.0.join("old.cl")).unwrap().ends_with("FINI\n"));
+    assert!(std::fs::symlink_metadata(folder.0.join("link.cl")).unwrap().is_symlink());
+    let ran = folder.run(&["run", "long.apt", "--format", "cl", "-o", "nowhere/out.cl"]);
+    assert!(ran.code == 2 && ran.stderr.contains("nowhere/out.cl: "), "{ran:?}");
+}
+
 #[test]
 fn tapes_trees_expansions_and_pictures_are_written() {
     let folder = Folder::new("products");

@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Outcome;
 use super::arguments::Color;
+use super::file;
 use crate::analysis::{Control, Progress};
 
 /// The file name that stands for standard output.
@@ -33,13 +34,13 @@ impl Console {
         self.written(AutoStream::new(io::stdout(), self.choice).lock().write_all(text.as_bytes()))
     }
 
-    /// Writes bytes to a file, or to standard output as they are; `-` is standard output too.
+    /// Writes bytes to a file, all at once, or to standard output as they are; `-` is standard output too.
     pub(super) fn write(&self, bytes: &[u8], file: Option<&Path>) -> Outcome {
         let Some(path) = file.filter(|path| path.as_os_str() != STANDARD_OUTPUT) else {
             let mut output = io::stdout().lock();
             return self.written(output.write_all(bytes).and_then(|()| output.flush()));
         };
-        match std::fs::write(path, bytes) {
+        match file::write(path, bytes) {
             Ok(()) => Outcome::Clean,
             Err(error) => {
                 self.error(&format!("{}: {error}", path.display()));

@@ -1,11 +1,11 @@
 //! `fmt`: programs get the style of their project.
 
-use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::Outcome;
 use super::arguments::FmtCall;
 use super::console::Console;
+use super::file;
 use super::program::{self, Dialects, Program, STANDARD_INPUT};
 use crate::analysis::{Control, Language};
 
@@ -63,7 +63,7 @@ fn one(program: &Program, file: &Path, check: bool, console: &Console) -> Outcom
     if new == old {
         return Outcome::Clean;
     }
-    match replace(file, &bytes) {
+    match file::replace(file, &bytes) {
         Ok(()) => {
             console.note(&format!("{}: formatted", program.name));
             Outcome::Clean
@@ -84,32 +84,4 @@ fn tell_kept(program: &Program, kept: &[(std::ops::Range<usize>, String)], conso
     if let Some(others) = kept.len().checked_sub(MOST_NAMED).filter(|others| *others > 0) {
         console.note(&format!("{}: {others} more statements are left as they are", program.name));
     }
-}
-
-/// Gives a file new contents all at once: whoever reads it, or an end of this process, never finds half of them.
-fn replace(file: &Path, bytes: &[u8]) -> io::Result<()> {
-    let file = std::fs::canonicalize(file)?;
-    let permissions = std::fs::metadata(&file)?.permissions();
-    let temporary = beside(&file)?;
-    let written = (|| {
-        let mut output = std::fs::OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        output.write_all(bytes)?;
-        output.sync_all()?;
-        std::fs::set_permissions(&temporary, permissions)?;
-        std::fs::rename(&temporary, &file)
-    })();
-    if written.is_err() {
-        // What is left behind concerns nobody; the reason is told.
-        let _ = std::fs::remove_file(&temporary);
-    }
-    written
-}
-
-/// A name beside a file that nobody else uses.
-fn beside(file: &Path) -> io::Result<PathBuf> {
-    let name = file.file_name().ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
-    let mut temporary = std::ffi::OsString::from(".");
-    temporary.push(name);
-    temporary.push(format!(".{}.tmp", std::process::id()));
-    Ok(file.with_file_name(temporary))
 }

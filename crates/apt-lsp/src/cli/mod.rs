@@ -7,6 +7,7 @@ mod convert;
 mod diff;
 mod expand;
 mod explain;
+mod file;
 mod findings;
 mod fmt;
 mod listing;
