@@ -130,6 +130,29 @@ fn names_lead_from_one_file_to_the_other() {
 }
 
 #[test]
+fn a_client_that_checks_versions_gets_them_with_a_new_name() {
+    let project = Project::new("versions");
+    let mut server =
+        project.server(&json!({ "workspace": { "workspaceEdit": { "documentChanges": true } } }));
+    let mut question = place(&project.program, 4, 6);
+    question["newName"] = json!("DRILL1");
+    let of_files = |server: &mut Server| {
+        let edits = server.ask("textDocument/rename", question.clone()).unwrap();
+        assert!(edits.get("changes").is_none(), "{edits}");
+        let all = edits["documentChanges"].as_array().unwrap().iter();
+        all.map(|one| (one["textDocument"].clone(), one["edits"].as_array().unwrap().len()))
+            .collect::<Vec<_>>()
+    };
+    let program = (json!({ "uri": project.program, "version": 1 }), 2);
+    let closed = (json!({ "uri": project.library, "version": null }), 1);
+    assert_eq!(of_files(&mut server), [closed, program.clone()]);
+    server.open(&project.library, LIBRARY);
+    server.change(&project.library, 7, 0, 3, 3, " new");
+    let open = (json!({ "uri": project.library, "version": 7 }), 1);
+    assert_eq!(of_files(&mut server), [open, program]);
+}
+
+#[test]
 fn findings_stand_at_the_call_and_in_the_included_file() {
     let project = Project::new("findings");
     let mut server = project.server(&json!({}));

@@ -9,5 +9,5 @@ pub(crate) mod tokens;
 pub(crate) mod written;
 
 pub(crate) use self::joined::joined;
-pub(crate) use self::places::{Places, Uris};
+pub(crate) use self::places::{Opened, Places, Uris};
 pub(crate) use self::position::{Encoding, Positions, TextIndex};

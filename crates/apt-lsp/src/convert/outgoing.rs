@@ -1,5 +1,7 @@
 //! Answers of the analysis, out: plain data with byte offsets becomes protocol types.
 
+use std::collections::HashMap;
+
 use tower_lsp::ls_types::{self as lsp, Uri};
 
 use super::{Places, Positions, TextIndex, Uris, written};
@@ -134,24 +136,31 @@ fn completion_kind(kind: CompletionKind) -> lsp::CompletionItemKind {
     }
 }
 
+/// Changes of files, for a client that does not ask which version of each they are meant for.
+pub(crate) fn plain_edit(changes: HashMap<Uri, Vec<lsp::TextEdit>>) -> lsp::WorkspaceEdit {
+    lsp::WorkspaceEdit { changes: Some(changes), ..lsp::WorkspaceEdit::default() }
+}
+
+/// Changes of files with the version of each that they are meant for; a file that is not open has none.
+pub(crate) fn versioned_edit(
+    changes: impl IntoIterator<Item = (Uri, Option<i32>, Vec<lsp::TextEdit>)>,
+) -> lsp::WorkspaceEdit {
+    let of_file = |(uri, version, edits): (Uri, Option<i32>, Vec<lsp::TextEdit>)| lsp::TextDocumentEdit {
+        text_document: lsp::OptionalVersionedTextDocumentIdentifier { uri, version },
+        edits: edits.into_iter().map(lsp::OneOf::Left).collect(),
+    };
+    lsp::WorkspaceEdit {
+        document_changes: Some(lsp::DocumentChanges::Edits(changes.into_iter().map(of_file).collect())),
+        ..lsp::WorkspaceEdit::default()
+    }
+}
+
 /// Something that can be done. `version` is that of the text, for a client that checks it before it applies edits.
 pub(crate) fn action(index: &TextIndex, uri: &Uri, version: Option<i32>, found: Action) -> lsp::CodeAction {
     let edits: Vec<lsp::TextEdit> = found.edits.into_iter().map(|one| edit(index, one)).collect();
     let change = match version {
-        Some(version) => lsp::WorkspaceEdit {
-            document_changes: Some(lsp::DocumentChanges::Edits(vec![lsp::TextDocumentEdit {
-                text_document: lsp::OptionalVersionedTextDocumentIdentifier {
-                    uri: uri.clone(),
-                    version: Some(version),
-                },
-                edits: edits.into_iter().map(lsp::OneOf::Left).collect(),
-            }])),
-            ..lsp::WorkspaceEdit::default()
-        },
-        None => lsp::WorkspaceEdit {
-            changes: Some(std::iter::once((uri.clone(), edits)).collect()),
-            ..lsp::WorkspaceEdit::default()
-        },
+        Some(version) => versioned_edit([(uri.clone(), Some(version), edits)]),
+        None => plain_edit(std::iter::once((uri.clone(), edits)).collect()),
     };
     lsp::CodeAction {
         title: found.title,

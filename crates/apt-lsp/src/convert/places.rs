@@ -13,12 +13,26 @@ use crate::analysis::SourceFile;
 
 /// What the client calls the files that it has opened.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Uris(pub Arc<BTreeMap<PathBuf, Uri>>);
+pub(crate) struct Uris(pub Arc<BTreeMap<PathBuf, Opened>>);
+
+/// A file that the client has opened.
+#[derive(Debug, Clone)]
+pub(crate) struct Opened {
+    /// As the client writes it.
+    pub uri: Uri,
+    /// The version of its text.
+    pub version: i32,
+}
 
 impl Uris {
     /// The URI of a file: as the client wrote it, if it has opened the file.
     pub(crate) fn of(&self, path: &Path) -> Option<Uri> {
-        self.0.get(path).cloned().or_else(|| Uri::from_file_path(path))
+        self.0.get(path).map(|opened| opened.uri.clone()).or_else(|| Uri::from_file_path(path))
+    }
+
+    /// The version of the text that the client has of a file, if it has opened it.
+    pub(crate) fn version(&self, uri: &Uri) -> Option<i32> {
+        self.0.values().find(|opened| opened.uri == *uri).map(|opened| opened.version)
     }
 }
 

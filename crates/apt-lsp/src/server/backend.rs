@@ -388,6 +388,7 @@ impl LanguageServer for Backend {
     async fn rename(&self, params: lsp::RenameParams) -> Result<Option<lsp::WorkspaceEdit>> {
         let place = params.text_document_position;
         let snapshot = job::snapshot(&self.events, place.text_document.uri).await?;
+        let versioned = self.features().versioned_edits;
         let changes = job::on_snapshot("rename", snapshot, move |snapshot, control| {
             let file = snapshot.included_path();
             let spot = Spot { file: file.as_deref(), offset: snapshot.index.offset(place.position) };
@@ -401,10 +402,21 @@ impl LanguageServer for Backend {
                     changes.entry(at.uri).or_default().push(lsp::TextEdit { range: at.range, new_text });
                 }
             }
-            Ok::<_, Refusal>(changes)
+            if !versioned {
+                return Ok(outgoing::plain_edit(changes));
+            }
+            let mut changes: Vec<_> = changes
+                .into_iter()
+                .map(|(uri, edits)| {
+                    let version = snapshot.version_of(&uri);
+                    (uri, version, edits)
+                })
+                .collect();
+            changes.sort_by(|one, other| one.0.as_str().cmp(other.0.as_str()));
+            Ok::<_, Refusal>(outgoing::versioned_edit(changes))
         })
         .await?;
-        Ok(Some(lsp::WorkspaceEdit { changes: Some(changes), ..lsp::WorkspaceEdit::default() }))
+        Ok(Some(changes))
     }
 
     async fn inlay_hint(&self, params: lsp::InlayHintParams) -> Result<Option<Vec<lsp::InlayHint>>> {

@@ -14,7 +14,7 @@ use super::diagnostics::{self, Touched};
 use super::outbox::{Notice, Outbox};
 use super::workers::Workers;
 use crate::analysis::{Document, Files, Language, Surroundings, TextEdit, normalised};
-use crate::convert::{Encoding, Places, TextIndex, Uris, changes};
+use crate::convert::{Encoding, Opened, Places, TextIndex, Uris, changes};
 use crate::settings::{Settings, Values};
 
 /// Something that happens to the documents, or a question about them.
@@ -124,6 +124,12 @@ impl Snapshot {
     /// The path of the document, if it is an included file.
     pub(super) fn included_path(&self) -> Option<PathBuf> {
         self.includers.first().and_then(|_| file_path(&self.uri)).map(|path| normalised(&path))
+    }
+
+    /// The version of the text of a file of the program, if the client has opened it.
+    pub(super) fn version_of(&self, uri: &Uri) -> Option<i32> {
+        let program = self.program();
+        if *uri == program.uri { Some(program.version) } else { self.uris.version(uri) }
     }
 
     /// Locations in the files of the program that the document belongs to.
@@ -446,7 +452,9 @@ impl Documents {
 
     /// What the client calls the files that it has opened.
     fn uris(&self) -> Uris {
-        let uris = self.open.iter().filter_map(|(uri, one)| Some((one.path.clone()?, uri.clone())));
+        let uris = self.open.iter().filter_map(|(uri, one)| {
+            Some((one.path.clone()?, Opened { uri: uri.clone(), version: one.version }))
+        });
         Uris(Arc::new(uris.collect()))
     }
 
