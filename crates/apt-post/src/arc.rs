@@ -1,6 +1,6 @@
 //! Fitting arcs to runs of points with both ends kept exactly.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{PI, SQRT_2, TAU};
 
 use apt_cldata::record::POSITIONS_A_UNIT;
 use apt_geometry::{Vec3, patience::Patience};
@@ -99,7 +99,9 @@ pub(crate) fn fit(
     let angles = swept_angles(&flat, middle, limits.patience).ok_or(f64::INFINITY)?;
     let sweep = angles.last().copied().unwrap_or(0.0).abs();
     let full = full_turn && (sweep - TAU).abs() < 1.0;
-    if full_turn != full || sweep > limits.sweep + 1e-9 {
+    // Each end is off its place by half a resolution along both axes at most, and turns by as much.
+    let rounded = SQRT_2 * limits.resolution / radius;
+    if full_turn != full || sweep > limits.sweep + rounded {
         return Err(f64::INFINITY);
     }
     let nearly_met = distance(start, end) < NEAR_RESOLUTIONS * limits.resolution;
@@ -204,7 +206,8 @@ fn check_third_axis(points: &[Vec3], axis: usize, angles: &[f64], limits: &ArcLi
     if worst <= limits.height_tolerance { Ok(()) } else { Err(worst) }
 }
 
-/// The longest arc from the start of a run: how many points after the start it takes in. Doubling, then halving.
+/// The longest arc from the start of a run: how many points after the start it takes in. Doubling, then halving. Of a circle that
+/// a record states it leaves no rest that is too short for an arc.
 pub(crate) fn longest(
     points: &[Vec3],
     plane: ArcPlane,
@@ -237,6 +240,11 @@ pub(crate) fn longest(
             Some(found) => best = found,
             None => fails = next,
         }
+    }
+    let rest = last - best.0;
+    if center.is_some() && (1..least).contains(&rest) {
+        let shorter = (best.0 + rest).checked_sub(least).filter(|count| *count >= least);
+        return shorter.and_then(try_to).or(Some(best));
     }
     Some(best)
 }
@@ -314,6 +322,35 @@ mod tests {
             (first[u], second[v]) = (1.0, 1.0);
             assert_eq!(first.cross(&second), axis);
             assert_eq!(axis[w], 1.0);
+        }
+    }
+
+    #[test]
+    fn a_circle_is_divided_so_that_each_part_is_an_arc() {
+        let points = turned([0.0, 0.0], 5.0, 0.0, TAU, 11, 0.0);
+        let halves = ArcLimits { sweep: PI, ..limits() };
+        let mut parts = Vec::new();
+        let mut rest = points.as_slice();
+        while let Some((count, _)) = longest(rest, ArcPlane::Xy, Some(Vec3::zeros()), &halves) {
+            parts.push(count);
+            rest = &rest[count..];
+        }
+        assert_eq!((parts, rest.len()), (vec![5, 4, 2], 1));
+    }
+
+    #[test]
+    fn ends_that_are_rounded_take_nothing_from_a_half_circle() {
+        for step in 0..50 {
+            let from = f64::from(step) * 0.1;
+            let center = [1.234_567_8, 2.345_678_9];
+            let mut points = turned(center, 5.0, from, from + PI, 12, 0.0);
+            for point in &mut points {
+                *point = point.map(|value| (value * 1e4).round() / 1e4);
+            }
+            let halves = ArcLimits { sweep: PI, ..limits() };
+            let center = Vec3::new(center[0], center[1], 0.0);
+            let (count, _) = longest(&points, ArcPlane::Xy, Some(center), &halves).unwrap();
+            assert_eq!(count, 12, "{from}");
         }
     }
 }

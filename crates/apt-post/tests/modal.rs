@@ -358,3 +358,29 @@ fn a_chamfer_is_as_deep_as_its_diameter_and_angle_make_it() {
         assert!(tape.findings.iter().any(|found| found.kind == wrong), "{:?}", tape.findings);
     }
 }
+
+#[test]
+fn a_stated_circle_is_made_of_arcs_up_to_its_end() {
+    for name in MACHINES {
+        for radius in [1.7, 4.62, 41.325] {
+            for (sweep, from) in (0..24).map(|step| (f64::from(step % 4 + 1) * 90.0, f64::from(step) * 0.7)) {
+                let place = |angle: f64| {
+                    let (sine, cosine) = angle.sin_cos();
+                    format!(
+                        "GOTO/{:.7},{:.7},0\n",
+                        1.234_567_8 + radius * cosine,
+                        2.345_678_9 + radius * sine
+                    )
+                };
+                let end = if sweep == 360.0 { place(from) } else { place(from + sweep.to_radians()) };
+                let statements = format!(
+                    "FEDRAT/100,MMPM\nRAPID\n{}MOVARC/1.2345678,2.3456789,0,0,0,1,{radius},ANGLE,{sweep}\n{end}",
+                    place(from)
+                );
+                let blocks = blocks(name, &statements);
+                let arcs = &blocks[at(&blocks, "G3 ")..at(&blocks, "M5")];
+                assert!(!arcs.iter().any(|block| block.contains("G1 ")), "{name} {statements} {arcs:#?}");
+            }
+        }
+    }
+}
