@@ -360,6 +360,26 @@ fn a_chamfer_is_as_deep_as_its_diameter_and_angle_make_it() {
 }
 
 #[test]
+fn coolant_that_is_on_runs_for_the_next_tool_too() {
+    let first =
+        "SPINDL/900,CLW\nCOOLNT/ON\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,5\nGOTO/1,0,5\nSPINDL/OFF\nLOADTL/2\n";
+    for name in MACHINES {
+        let on = |coolant: &str, end: &str| {
+            let statements = format!("{first}{coolant}SPINDL/900,CLW\n{end}");
+            let blocks = blocks_after("UNITS/MM\nLOADTL/1\n", name, &statements);
+            let second = blocks[at(&blocks, "T2 M6")..].to_vec();
+            let count = |code: &str| second.iter().filter(|block| block.ends_with(code)).count();
+            (count("M8"), count("M7"), count("M9"))
+        };
+        let motions = "RAPID\nGOTO/0,0,5\nGOTO/1,0,5\n";
+        assert_eq!(on("", motions), (1, 0, 1), "{name}: it stays until it is changed");
+        assert_eq!(on("COOLNT/ON\n", motions), (1, 0, 1), "{name}");
+        assert_eq!(on("COOLNT/OFF\n", motions).0, 0, "{name}");
+        assert_eq!(on("", "END\n").0, 0, "{name}: without a motion nobody needs it");
+    }
+}
+
+#[test]
 fn a_stated_circle_is_made_of_arcs_up_to_its_end() {
     for name in MACHINES {
         for radius in [1.7, 4.62, 41.325] {

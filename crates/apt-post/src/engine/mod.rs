@@ -328,7 +328,8 @@ impl<'a> Engine<'a> {
             return;
         }
         self.end_cycle();
-        self.coolant_now();
+        // Coolant that waits for a motion is not on, and is not needed any more.
+        self.coolant &= self.approach.take().is_none();
         self.ended = true;
         let machine = self.machine;
         let off = |on: bool, code: &str| if on { code.to_owned() } else { String::new() };

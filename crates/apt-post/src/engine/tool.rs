@@ -58,9 +58,9 @@ impl Engine<'_> {
             self.control.code(&machine.codes.spindle_off);
             self.spindle.on = false;
         }
-        if self.coolant {
+        // What has waited for a motion in vain is not on yet.
+        if self.coolant && self.approach.is_none() {
             self.control.code(&machine.codes.coolant_off);
-            self.coolant = false;
         }
         let values = Values::default().number("T", f64::from(number)).number("H", f64::from(offset));
         self.control.templates(&machine.templates.tool_change, &values);
@@ -69,10 +69,10 @@ impl Engine<'_> {
         // Where the machine goes to change a tool, the post-processor does not know.
         self.control.forget(&["X", "Y", "Z"]);
         self.position = None;
-        self.approach = Some(String::new());
-        if unload {
-            self.approach = None;
-        }
+        // Coolant stays on until it is put off: it runs again where the new tool comes to the part.
+        self.coolant &= !unload;
+        let coolant = self.coolant_code.clone().filter(|_| self.coolant);
+        self.approach = (!unload).then(|| coolant.unwrap_or_default());
     }
 
     /// SELCTL, SELECT/TOOL.
