@@ -25,6 +25,8 @@ fn binary() -> &'static Path {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let built = Command::new(cargo)
             .args(["build", "-p", "apt-lsp", "--message-format", "json", "--quiet"])
+            // As this test itself was built: another profile would be built anew, and a slow one takes minutes here.
+            .args((!cfg!(debug_assertions)).then_some("--release"))
             .current_dir(repository(""))
             .output()
             .unwrap();
