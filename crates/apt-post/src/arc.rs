@@ -99,7 +99,7 @@ pub(crate) fn fit(
     let angles = swept_angles(&flat, middle, limits.patience).ok_or(f64::INFINITY)?;
     let sweep = angles.last().copied().unwrap_or(0.0).abs();
     let full = full_turn && (sweep - TAU).abs() < 1.0;
-    // Each end is off its place by half a resolution along both axes at most, and turns by as much.
+    // Each place is off its own by half a resolution along both axes at most, and turns by as much; two of them make an angle.
     let rounded = SQRT_2 * limits.resolution / radius;
     if full_turn != full || sweep > limits.sweep + rounded {
         return Err(f64::INFINITY);
@@ -111,7 +111,7 @@ pub(crate) fn fit(
     if center.is_none() {
         check_chords(&flat, radius, limits)?;
     }
-    check_third_axis(points, w, &angles, limits)?;
+    check_third_axis(points, w, &angles, rounded, limits)?;
     let mut place = points[0];
     (place[u], place[v]) = (middle[0], middle[1]);
     Ok(Arc { center: place, counterclockwise: angles.last().copied().unwrap_or(0.0) > 0.0, full_turn })
@@ -194,7 +194,15 @@ fn check_chords(points: &[[f64; 2]], radius: f64, limits: &ArcLimits<'_>) -> Res
     if sagitta <= limits.chord_tolerance + limits.tolerance { Ok(()) } else { Err(sagitta) }
 }
 
-fn check_third_axis(points: &[Vec3], axis: usize, angles: &[f64], limits: &ArcLimits<'_>) -> Result<(), f64> {
+/// Whether the third axis rises as the angle grows. An angle between rounded places is off by as much as `rounded`, and so are the
+/// heights at both.
+fn check_third_axis(
+    points: &[Vec3],
+    axis: usize,
+    angles: &[f64],
+    rounded: f64,
+    limits: &ArcLimits<'_>,
+) -> Result<(), f64> {
     let start = points[0][axis];
     let rise = points[points.len() - 1][axis] - start;
     let whole = angles.last().copied().unwrap_or(0.0);
@@ -203,7 +211,8 @@ fn check_third_axis(points: &[Vec3], axis: usize, angles: &[f64], limits: &ArcLi
     }
     let off = |(point, angle): (&Vec3, &f64)| (point[axis] - start - rise * angle / whole).abs();
     let worst = points.iter().zip(angles).map(off).fold(0.0, f64::max);
-    if worst <= limits.height_tolerance { Ok(()) } else { Err(worst) }
+    let unsure = 2.0 * rounded * (rise / whole).abs();
+    if worst <= limits.height_tolerance + unsure { Ok(()) } else { Err(worst) }
 }
 
 /// The longest arc from the start of a run: how many points after the start it takes in. Doubling, then halving. Of a circle that
@@ -288,6 +297,22 @@ mod tests {
         let strict = ArcLimits { chord_tolerance: 0.0, ..limits() };
         assert!(fit(&points, ArcPlane::Xy, None, &strict).is_err());
         assert!(fit(&points, ArcPlane::Xy, Some(Vec3::new(2.0, 2.0, 0.0)), &strict).is_ok());
+    }
+
+    #[test]
+    fn a_steep_helix_with_rounded_places_is_one_arc() {
+        for step in 0..50 {
+            let from = f64::from(step) * 0.1;
+            let center = [1.234_567_8, 2.345_678_9];
+            let mut points = turned(center, 0.6, from, from + 1.5, 9, 14.0);
+            for point in &mut points {
+                *point = point.map(|value| (value * 1e3).round() / 1e3);
+            }
+            let limits = ArcLimits { resolution: 1e-3, tolerance: 0.05, height_tolerance: 0.01, ..limits() };
+            let center = Vec3::new(center[0], center[1], 0.0);
+            let found = longest(&points, ArcPlane::Xy, Some(center), &limits);
+            assert_eq!(found.map(|(count, _)| count), Some(9), "{from}");
+        }
     }
 
     #[test]
