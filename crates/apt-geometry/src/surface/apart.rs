@@ -50,6 +50,15 @@ impl<'a> Body<'a> {
     }
 }
 
+/// A place of a surface that is nearer to a body than wanted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearer {
+    /// The place, on the surface without its own thickness.
+    pub place: Vec3,
+    /// By how much the surface is thicker there: what keeps off it is farther from the place than wanted by as much.
+    pub stock: f64,
+}
+
 /// How many nodes and parts a question looks at, and how long.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit<'a> {
@@ -75,6 +84,8 @@ pub(super) struct Apart<'a> {
     limit: Limit<'a>,
     /// The place of the body nearest to what was looked at last.
     nearest: Vec3,
+    /// The middle of a part that is nearer than wanted.
+    too_near: Option<Vec3>,
 }
 
 impl<'a> Apart<'a> {
@@ -90,6 +101,7 @@ impl<'a> Apart<'a> {
             looks: 0,
             limit,
             nearest: Vec3::zeros(),
+            too_near: None,
         }
     }
 
@@ -120,6 +132,11 @@ impl<'a> Apart<'a> {
     /// The distance that all parts keep, unless they were too many to look at.
     pub(super) fn kept(&self) -> Option<f64> {
         self.may_look().then_some(self.least)
+    }
+
+    /// The place that was found nearer than wanted, if one was, of a surface of some thickness of its own.
+    pub(super) fn nearer(&self, stock: f64) -> Option<Nearer> {
+        self.too_near.map(|place| Nearer { place, stock })
     }
 
     /// Whether a part that keeps a distance adds nothing to what is known.
@@ -213,9 +230,14 @@ impl<'a> Apart<'a> {
         halves: &mut dyn FnMut(&mut Self, (f64, Vec3)) -> bool,
     ) -> bool {
         let (least, middle) = self.part(part);
-        self.is_settled(least)
-            || self.takes(least)
-            || middle.0 >= self.wanted && self.may_look() && halves(self, middle)
+        if self.is_settled(least) || self.takes(least) {
+            return true;
+        }
+        if middle.0 < self.wanted {
+            self.too_near = Some(*part.center());
+            return false;
+        }
+        self.may_look() && halves(self, middle)
     }
 }
 
@@ -234,6 +256,16 @@ impl Surface {
 
     /// The same within a limit.
     pub fn keeps_off_body(&self, body: Body<'_>, wanted: f64, limit: Limit<'_>) -> Option<f64> {
+        self.keeps_off_or_nears(body, wanted, limit).ok()
+    }
+
+    /// The same; where it is not known, a place that is nearer than wanted, if one was found: another body that is as near to it need not be asked about.
+    pub fn keeps_off_or_nears(
+        &self,
+        body: Body<'_>,
+        wanted: f64,
+        limit: Limit<'_>,
+    ) -> Result<f64, Option<Nearer>> {
         let mut asked = Apart::new(body, wanted, limit);
         let keeps = match self {
             Self::Ruled(sheet) => sheet.keeps_apart(&mut asked),
@@ -242,6 +274,6 @@ impl Surface {
             Self::Tabulated(curve) => curve.keeps_apart(&mut asked),
             _ => false,
         };
-        if keeps { asked.kept() } else { None }
+        asked.kept().filter(|_| keeps).ok_or_else(|| asked.nearer(0.0))
     }
 }

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use nalgebra::Matrix3;
 
 pub use self::{
-    apart::{AtEnds, Away, Beside, Body, HalfSpace, Limit},
+    apart::{AtEnds, Away, Beside, Body, HalfSpace, Limit, Nearer},
     bend::{Bend, Region},
     chart::{Chart, Place, Steady},
     cone::ConeForm,

@@ -21,7 +21,7 @@ use self::{
 };
 use super::{
     Chart, Foot, Place, Surface,
-    apart::{Apart, AtEnds, Beside, Body, HalfSpace, Limit},
+    apart::{Apart, AtEnds, Beside, Body, HalfSpace, Limit, Nearer},
     descent::{Descent, MAX_STEPS, Slopes},
     part::{Count, Part, Rectangle, Summary},
     perpendicular,
@@ -389,7 +389,12 @@ impl PolyConicSheet {
     }
 
     /// A distance from a body, not below the one wanted, that all cells keep: the nearest first, after which others add nothing.
-    pub(super) fn keeps_apart(&self, body: Body<'_>, wanted: f64, limit: Limit<'_>) -> Option<f64> {
+    pub(super) fn keeps_apart(
+        &self,
+        body: Body<'_>,
+        wanted: f64,
+        limit: Limit<'_>,
+    ) -> Result<f64, Option<Nearer>> {
         let own = |p: &Vec3| {
             let (distance, outward) = (body.away)(&self.linear.tr_mul(&(p - self.origin)));
             (distance, self.linear * outward)
@@ -429,13 +434,17 @@ impl PolyConicSheet {
                 [None, None] => {
                     let part = self.cells.get(node).and_then(|cell| cell.part.as_ref());
                     if !part.is_some_and(|part| part.keeps_apart(self, &mut asked, 0)) {
-                        return None;
+                        let in_place = |near: Nearer| Nearer {
+                            place: self.linear.tr_mul(&(near.place - self.origin)),
+                            ..near
+                        };
+                        return Err(asked.nearer(stock).map(in_place));
                     }
                 }
                 children => open.extend(children.into_iter().flatten()),
             }
         }
-        Some(asked.kept()? - stock)
+        asked.kept().map(|kept| kept - stock).ok_or(None)
     }
 
     pub(super) fn chart(&self, place: &Place) -> Option<Chart> {

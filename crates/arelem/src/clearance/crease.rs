@@ -11,7 +11,7 @@ use apt_geometry::{
 
 mod turning;
 
-pub(super) use self::turning::clears_turning;
+pub(super) use self::turning::Turning;
 use super::{Contact, Memory, Tool, search::MISSED};
 
 /// Bound of the steps along a line.

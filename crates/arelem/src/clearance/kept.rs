@@ -1,7 +1,10 @@
 //! Whether the clearance keeps a level on the straight way of a tool end from one contact to another: by these, which takes little, or
 //! by parts of the surface, some hundred of them.
 
-use apt_geometry::{Vec3, surface::Surface};
+use apt_geometry::{
+    Vec3,
+    surface::{Nearer, Surface},
+};
 
 use super::{
     Contact, Gauge, Tool,
@@ -119,11 +122,20 @@ impl Gauge {
         if self.on || self.disk.is_some() || !is_same || !self.surface.has_charts() {
             return false;
         }
-        let poses = [(tools[0], from), (tools[1], to)];
-        let away = (first.gradient + last.gradient).try_normalize(0.0);
-        away.is_some_and(|away| {
-            crease::clears_turning(self.met(tools[0]), poses, &away, level + self.thickness)
-        })
+        let Some(away) = (first.gradient + last.gradient).try_normalize(0.0) else { return false };
+        let way = crease::Turning { poses: [(tools[0], from), (tools[1], to)], away: &away };
+        // A part of the surface in which a place is too near is never shown to keep off, however fine it is cut.
+        let touched = [first, last].map(|contact| Nearer { place: contact.surface, stock: 0.0 });
+        let likely = touched.into_iter().chain(self.memory.too_near(self.side));
+        match way.clears(self.met(tools[0]), level + self.thickness, likely) {
+            Ok(()) => true,
+            Err(nearer) => {
+                if let Some(place) = nearer {
+                    self.memory.remember_too_near(self.side, place);
+                }
+                false
+            }
+        }
     }
 
     /// Whether no part of the surface is nearer than a level to what is measured while its end goes straight from one contact to another.

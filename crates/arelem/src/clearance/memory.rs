@@ -6,7 +6,7 @@
 
 use std::cell::{Cell, RefCell};
 
-use apt_geometry::Vec3;
+use apt_geometry::{Vec3, surface::Nearer};
 
 use super::{
     Contact, Tool,
@@ -158,6 +158,8 @@ pub struct Memory {
     crease_passed: Cell<Option<(f64, Spot)>>,
     /// What parts of the surface showed of the last contact.
     by_parts: Cell<ByParts>,
+    /// The place of the surface that was too near to a tool that turns, and the side.
+    too_near: Cell<Option<(f64, Nearer)>>,
     /// How distances bend in balls about the axis of a tool whose flank was in contact.
     pub(super) courses: Courses,
     /// What was shown last, in turn.
@@ -289,6 +291,16 @@ impl Memory {
     /// Keeps what they showed.
     pub(super) fn show_by_parts(&self, by_parts: ByParts) {
         self.by_parts.set(by_parts);
+    }
+
+    /// The place of the surface that was too near to a tool on a side the last time that one was on its way.
+    pub(super) fn too_near(&self, side: f64) -> Option<Nearer> {
+        self.too_near.get().filter(|(seen, _)| *seen == side).map(|(_, place)| place)
+    }
+
+    /// Keeps such a place.
+    pub(super) fn remember_too_near(&self, side: f64, place: Nearer) {
+        self.too_near.set(Some((side, place)));
     }
 
     /// Keeps a contact at the tool's corner.

@@ -7,26 +7,47 @@
 
 use apt_geometry::{
     Vec3,
-    surface::{Body, Limit, Surface},
+    surface::{Body, Limit, Nearer, Surface},
 };
 
 use super::{CLOSE, MOST_LOOKS, MOST_POSITIONS, ROUGHLY, Tool, least_off};
 
-/// Whether no place of a surface is nearer than a level to a tool that turns on its way, given with its ends and led off the surface by `away`: one
-/// that may be deeper in is moved out by as much, and must then be clear.
-pub(in crate::clearance) fn clears_turning(
-    surface: &Surface,
-    [first, last]: [(&Tool, &Vec3); 2],
-    away: &Vec3,
-    level: f64,
-) -> bool {
-    let hull = Hull::new([first, last], away * (-level).max(0.0));
-    let wanted = level.max(least_off(first.0)) + hull.swing();
-    let distance = |place: &Vec3| hull.away(place);
-    let at_ends = |place: &Vec3| hull.turned_along(place);
-    let body = Body { at_ends: Some(&at_ends), ..Body::new(&distance) };
-    let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: first.0.patience };
-    surface.keeps_off_body(body, wanted, limit).is_some()
+#[cfg(test)]
+thread_local! {
+    /// Places of surfaces that this thread has held against tools that turn.
+    pub(crate) static PLACES_ASKED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
+/// The way of a tool that turns, given with its ends, and the direction that leads it off the surface.
+pub(in crate::clearance) struct Turning<'a> {
+    pub(in crate::clearance) poses: [(&'a Tool<'a>, &'a Vec3); 2],
+    pub(in crate::clearance) away: &'a Vec3,
+}
+
+impl Turning<'_> {
+    /// Whether no place of a surface is nearer than a level: a tool that may be deeper in is moved out by as much, and must then be clear. Otherwise a
+    /// place that is nearer, where one was found that is not one of those that are likely to be, which are looked at first.
+    pub(in crate::clearance) fn clears(
+        &self,
+        surface: &Surface,
+        level: f64,
+        likely: impl Iterator<Item = Nearer>,
+    ) -> Result<(), Option<Nearer>> {
+        let Self { poses: [first, last], away } = *self;
+        let hull = Hull::new([first, last], away * (-level).max(0.0));
+        let wanted = level.max(least_off(first.0)) + hull.swing();
+        for near in likely {
+            let both = hull.turned_along(&near.place).map(|(distance, _)| distance);
+            if both[0].min(both[1]) < wanted + near.stock {
+                return Err(None);
+            }
+        }
+        let distance = |place: &Vec3| hull.away(place);
+        let at_ends = |place: &Vec3| hull.turned_along(place);
+        let body = Body { at_ends: Some(&at_ends), ..Body::new(&distance) };
+        let limit = Limit { looks: MOST_LOOKS, enough: wanted, patience: first.0.patience };
+        surface.keeps_off_or_nears(body, wanted, limit).map(|_| ())
+    }
 }
 
 /// Two positions of a tool and all between.
@@ -126,6 +147,8 @@ impl<'a> Hull<'a> {
 
     /// Closes in the position between both from which a place is as far beyond what is told of the first one as of the last one.
     fn between(&self, place: &Vec3, mut beyond: impl FnMut(&Out) -> [f64; 2]) {
+        #[cfg(test)]
+        PLACES_ASKED.set(PLACES_ASKED.get() + 1);
         let way = self.tips[1] - self.tips[0];
         let square = way.norm_squared();
         let mut share =
@@ -179,8 +202,8 @@ mod tests {
     use super::*;
     use crate::{
         attitude::Sweep,
-        clearance::crease::outward,
-        tests::{level, sheets::ruled, v},
+        clearance::{Gauge, Memory, crease::outward},
+        tests::{cylinder, level, sheets::ruled, v},
     };
 
     /// A long flank leans towards a wall and away from it, about a place of which it stays off by as much: the wall is as far as its edges come.
@@ -202,10 +225,46 @@ mod tests {
         };
         let [first, last] = [leaning(0.9, -lean), leaning(1.1, lean)];
         let least = off - half * lean;
-        let clears =
-            |level: f64| clears_turning(&wall, [(&first.0, &first.1), (&last.0, &last.1)], &Vec3::y(), level);
+        let way = Turning { poses: [(&first.0, &first.1), (&last.0, &last.1)], away: &Vec3::y() };
+        let clears = |level: f64| way.clears(&wall, level, std::iter::empty()).is_ok();
         assert!(clears(0.95 * least));
         assert!(!clears(1.05 * least));
+    }
+
+    /// Along a ridge the tool is nearer to that on its way than at both ends: what is in the way once is asked about first from then on, and so is what
+    /// the tool touches at the ends.
+    #[test]
+    fn what_was_in_the_way_of_a_tool_that_turns_is_asked_about_first() {
+        let radius = 4.0_f64;
+        let drop = (radius * radius - 1.0).sqrt() - radius;
+        let edge = |z: f64| {
+            (cylinder(v(0.0, -radius, 0.0), Vec3::z(), radius), v(-1.0, drop, z), v(1.0, drop, z), Vec3::y())
+        };
+        let surface = Surface::from_geometry(&ruled([edge(-1.0), edge(1.0)])).expect("a ridge");
+        let side = surface.signed_distance(&v(0.0, 1.0, 0.0)).signum();
+        let memory = Memory::default();
+        let gauge = Gauge { surface, on: false, side, thickness: 0.0, disk: None, memory };
+        let cutter = Cutter::from_numbers(&[0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 1.0).expect("cutter");
+        let tool = Tool::new(cutter, Vec3::z());
+        let leaning = |x: f64, lean: f64| (tool.turned(v(lean.sin(), 0.0, lean.cos())), v(x, 0.26, -0.5));
+        let ask = |half: f64, level: f64| {
+            let [(first, from), (last, to)] = [-1.0, 1.0].map(|sense| leaning(sense * half, 0.01 * sense));
+            let contacts = [gauge.contact(&first, &from), gauge.contact(&last, &to)];
+            let before = PLACES_ASKED.get();
+            let [a, b] = &contacts;
+            let clears = gauge.is_clear_while_turning([&first, &last], [(&from, a), (&to, b)], level);
+            (clears, PLACES_ASKED.get() - before, a.clearance.min(b.clearance))
+        };
+        let (clears, places, at_ends) = ask(0.1, 0.0105);
+        assert!(!clears && at_ends > 0.0105 && places > 2, "{places} places, {at_ends} off at the ends");
+        // Again, and on a part of the way: what is touched at both ends, and what was in the way.
+        for half in [0.1, 0.08] {
+            let (clears, places, at_ends) = ask(half, 0.0105);
+            assert!(!clears && at_ends > 0.0105 && places <= 3, "{places} places");
+        }
+        let (clears, places, at_ends) = ask(0.1, 0.013);
+        assert!(!clears && at_ends < 0.013 && places == 1, "{places} places");
+        assert!(ask(0.1, 0.0095).0);
     }
 
     /// A tool that turns is nowhere nearer to a place than the hull of its ends, less how far it swings out, nor nearer than planes that turn along
