@@ -195,32 +195,43 @@ impl<'a> Around<'a> {
     /// Heights between which all of the tool is that is not known to be farther from the surface than a level; beside a contact on the
     /// flank they are looked for.
     pub(in crate::clearance) fn within(&self, level: f64) -> [f64; 2] {
-        let profile = &self.pose.tool.profile;
-        let (upper, top) = (profile.upper.height, profile.top.height);
-        let height = self.near().map(|near| self.pose.tool.axis.dot(&(near.surface - self.pose.tip)));
-        let height = height.filter(|height| *height > upper);
-        let tried = |sense: f64| {
-            height
-                .into_iter()
-                .flat_map(move |height| ENDS.map(|share| height + sense * share * self.pose.scale()))
-        };
-        let ends = self.known().map_or([None; 3], |(_, zone)| zone.ends(&self.pose));
-        let far = |which: usize| self.far(ends[which]?, level);
-        let above = match far(0) {
-            Some(End::Above(from)) => Some(from),
-            _ => tried(1.0).find(|from| *from < top && self.is_apart(End::Above(*from), level)),
-        };
-        let below = match far(1) {
+        let upper = self.pose.tool.profile.upper.height;
+        let below = match self.far_end(1, level) {
             Some(End::Below(to)) => Some(to),
-            _ => tried(-1.0).find(|to| *to > upper && self.is_apart(End::Below(*to), level)),
+            _ => self.tried(-1.0).find(|to| *to > upper && self.is_apart(End::Below(*to), level)),
         };
-        [below.unwrap_or(0.0), above.unwrap_or(top)]
+        [below.unwrap_or(0.0), self.top_within(level)]
+    }
+
+    /// The upper one of these heights.
+    fn top_within(&self, level: f64) -> f64 {
+        let top = self.pose.tool.profile.top.height;
+        let above = match self.far_end(0, level) {
+            Some(End::Above(from)) => Some(from),
+            _ => self.tried(1.0).find(|from| *from < top && self.is_apart(End::Above(*from), level)),
+        };
+        above.unwrap_or(top)
+    }
+
+    /// Heights above a contact on the flank, or below it, at which an end of the tool may be far enough.
+    fn tried(&self, sense: f64) -> impl Iterator<Item = f64> {
+        let Pose { tool, tip, .. } = &self.pose;
+        let height = self.near().map(|near| tool.axis.dot(&(near.surface - *tip)));
+        let height = height.filter(|height| *height > tool.profile.upper.height);
+        let scale = self.pose.scale();
+        height.into_iter().flat_map(move |height| ENDS.map(|share| height + sense * share * scale))
+    }
+
+    /// What is known to keep a level of the ends of the tool about the last contact: above it, below it.
+    fn far_end(&self, which: usize, level: f64) -> Option<End> {
+        let ends = self.known().map_or([None; 3], |(_, zone)| zone.ends(&self.pose));
+        self.far(ends[which]?, level)
     }
 
     /// The upper one of these heights; beside a contact below the flank one is looked for, too.
     pub(in crate::clearance) fn height_within(&self, level: f64) -> f64 {
         let profile = &self.pose.tool.profile;
-        let (upper, top) = (profile.upper.height, self.within(level)[1]);
+        let (upper, top) = (profile.upper.height, self.top_within(level));
         if top < profile.top.height {
             return top;
         }

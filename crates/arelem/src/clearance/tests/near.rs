@@ -12,6 +12,7 @@ use crate::{
         floor::Bases,
         search,
     },
+    tests::{cylinder, sheets::ruled},
     verify::tests::{BARRELS, lofts},
 };
 
@@ -305,4 +306,30 @@ fn places_of_the_surface_between_two_contacts_bound_the_clearance_from_above() {
     }
     let count = close.iter().filter(|is_close| **is_close).count();
     assert!(close.len() >= 24 && count >= 12, "{count} of {}", close.len());
+}
+
+/// Where the flank of a tool touches a bulge, up to which height it may come into contact is asked for: what is below costs nothing.
+#[test]
+fn how_high_a_tool_may_touch_is_told_without_what_is_below() {
+    let radius = 4.0_f64;
+    let drop = (radius * radius - 1.0).sqrt() - radius;
+    let edge = |x: f64| {
+        let bulge = cylinder(v(0.0, -radius, 0.0), Vec3::x(), radius);
+        (bulge, v(x, drop, -1.0), v(x, drop, 1.0), Vec3::y())
+    };
+    let bulge = ruled([edge(-1.0), edge(1.0)]);
+    let side = gauge(&bulge, 1.0).surface.signed_distance(&v(0.0, 1.0, 0.0)).signum();
+    let gauge = gauge(&bulge, side);
+    let (tool, tip) = (tool(&[0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0]), v(0.0, 0.251, -2.0));
+    let contact = gauge.contact(&tool, &tip);
+    let around = Around::new(&gauge, &tool, &tip, 0.0);
+    let level = contact.clearance + 1e-3;
+    let counted = |height: &dyn Fn() -> f64| {
+        let before = LOOKS.get();
+        (height(), LOOKS.get() - before)
+    };
+    let (both, alone) = (counted(&|| around.within(level)[1]), counted(&|| around.height_within(level)));
+    assert!(around.within(level)[0] > 0.0 && both.0 < 4.0, "{:?}", around.within(level));
+    assert_eq!(both.0, alone.0);
+    assert!(alone.1 > 0 && 3 * alone.1 <= 2 * both.1, "{} looks, {} for both", alone.1, both.1);
 }
