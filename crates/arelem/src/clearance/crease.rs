@@ -357,7 +357,8 @@ pub(super) fn nearest_on_way(body: &Away<'_>, place: &Vec3, way: &Vec3, close: C
         }
         // The distance falls along the way where the place lies ahead.
         beside[usize::from(last.slope <= 0.0)] = Some(last);
-        last = at(share_between(&beside, turn % HALVED == HALVED - 1));
+        let slopes = beside.map(|known| known.map(|known| (known.share, known.slope)));
+        last = at(share_between(slopes, turn % HALVED == HALVED - 1));
         if last.bound > best.bound {
             best = last;
         }
@@ -365,11 +366,12 @@ pub(super) fn nearest_on_way(body: &Away<'_>, place: &Vec3, way: &Vec3, close: C
     (best.bound, best.out)
 }
 
-/// Between two positions the one where a slope that grows evenly is level, or that in the middle; the slope jumps where another piece is nearest.
-fn share_between([ahead, behind]: &[Option<Position>; 2], is_halved: bool) -> f64 {
-    let (low, high) = (ahead.map_or(0.0, |p| p.share), behind.map_or(1.0, |p| p.share));
+/// Between two shares of a way, with what vanishes at the one that is looked for, where that would if it changed evenly, or the middle: it jumps where another
+/// piece is nearest.
+fn share_between([ahead, behind]: [Option<(f64, f64)>; 2], is_halved: bool) -> f64 {
+    let (low, high) = (ahead.map_or(0.0, |(share, _)| share), behind.map_or(1.0, |(share, _)| share));
     let level = match (ahead, behind) {
-        (Some(a), Some(b)) if !is_halved => low + (high - low) * a.slope / (a.slope - b.slope),
+        (Some((_, a)), Some((_, b))) if !is_halved => low + (high - low) * a / (a - b),
         _ => f64::NAN,
     };
     if level > low && level < high { level } else { 0.5 * (low + high) }

@@ -10,12 +10,14 @@ use apt_geometry::{
     surface::{Body, Limit, Nearer, Surface},
 };
 
-use super::{CLOSE, MOST_LOOKS, MOST_POSITIONS, ROUGHLY, Tool, least_off};
+use super::{CLOSE, HALVED, MOST_LOOKS, MOST_POSITIONS, ROUGHLY, Tool, least_off, share_between};
 
 #[cfg(test)]
 thread_local! {
     /// Places of surfaces that this thread has held against tools that turn.
     pub(crate) static PLACES_ASKED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+    /// Positions between both ends that it has looked at for them.
+    pub(crate) static POSITIONS_ASKED: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
 }
 
 /// The way of a tool that turns, given with its ends, and the direction that leads it off the surface.
@@ -153,24 +155,23 @@ impl<'a> Hull<'a> {
         let square = way.norm_squared();
         let mut share =
             if square > 0.0 { ((place - self.tips[0]).dot(&way) / square).clamp(0.0, 1.0) } else { 0.5 };
-        let (mut low, mut high) = (0.0, 1.0);
+        // Positions beside which that one is, and by how much less far the place is beyond the last one there.
+        let mut beside: [Option<(f64, f64)>; 2] = [None; 2];
         let mut best = f64::NEG_INFINITY;
-        for _ in 0..MOST_POSITIONS {
+        for turn in 0..MOST_POSITIONS {
             let [start, end] = beyond(&self.out_of(share, place));
             best = start.min(end).max(best);
             if (start - end).abs() <= self.close + ROUGHLY * best.max(0.0) {
                 break;
             }
             // The place lies ahead where the last position reaches farther.
-            if end < start {
-                low = share;
-            } else {
-                high = share;
-            }
+            beside[usize::from(end >= start)] = Some((share, start - end));
+            let [low, high] = [(0, 0.0), (1, 1.0)]
+                .map(|(k, limit): (usize, f64)| beside[k].map_or(limit, |(share, _)| share));
             if high <= low {
                 break;
             }
-            share = 0.5 * (low + high);
+            share = share_between(beside, turn % HALVED == HALVED - 1);
         }
     }
 
@@ -183,6 +184,8 @@ impl<'a> Hull<'a> {
 
     /// The direction out of a position between both to a place.
     fn out_of(&self, share: f64, place: &Vec3) -> Out {
+        #[cfg(test)]
+        POSITIONS_ASKED.set(POSITIONS_ASKED.get() + 1);
         let between = |ends: &[Vec3; 2]| ends[0] * (1.0 - share) + ends[1] * share;
         let axis = between(&self.axes).try_normalize(0.0).unwrap_or(self.axes[0]);
         let from_tip = place - between(&self.tips);
@@ -206,6 +209,9 @@ mod tests {
         tests::{cylinder, level, sheets::ruled, v},
     };
 
+    /// Positions that are looked at for each place in the mean; halves alone take twice as many.
+    const MOST_EACH: f64 = 6.0;
+
     /// A long flank leans towards a wall and away from it, about a place of which it stays off by as much: the wall is as far as its edges come.
     #[test]
     fn a_flank_that_leans_beside_a_wall_keeps_off_it() {
@@ -227,7 +233,11 @@ mod tests {
         let least = off - half * lean;
         let way = Turning { poses: [(&first.0, &first.1), (&last.0, &last.1)], away: &Vec3::y() };
         let clears = |level: f64| way.clears(&wall, level, std::iter::empty()).is_ok();
+        let asked = || [PLACES_ASKED.get(), POSITIONS_ASKED.get()].map(|count| count as f64);
+        let before = asked();
         assert!(clears(0.95 * least));
+        let [places, positions] = [0, 1].map(|k: usize| asked()[k] - before[k]);
+        assert!(positions <= MOST_EACH * places, "{positions} positions for {places} places");
         assert!(!clears(1.05 * least));
     }
 
