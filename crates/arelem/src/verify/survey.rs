@@ -317,9 +317,7 @@ impl Sheet {
         let reach = first.abs().max(last.abs()) + 1.5 * travel;
         let slot = usize::from(tool.profile.is_point());
         let near = self.near.borrow();
-        let known = near[slot]
-            .as_ref()
-            .filter(|near| near.profile == *tool.profile && near.moved(tip, tool) + reach <= near.bound);
+        let known = near[slot].as_ref().filter(|near| near.holds_within(reach, tip, tool));
         let seen;
         // What is known of their distances, and the way since.
         let (parts, since) = match known {
@@ -439,6 +437,11 @@ impl Near {
         self.parts.push(beside);
         self.last = Some((index, at));
         true
+    }
+
+    /// Whether it tells all that is within reach of a tool.
+    fn holds_within(&self, reach: f64, tip: &Vec3, tool: &Tool<'_>) -> bool {
+        self.profile == *tool.profile && self.moved(tip, tool) + reach <= self.bound
     }
 
     /// No place of the tool is farther from where it was.

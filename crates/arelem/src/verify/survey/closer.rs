@@ -251,9 +251,7 @@ impl Sheet {
         let reach = passage.reach();
         let slot = usize::from(tool.profile.is_point());
         let near = self.near.borrow();
-        let known = near[slot]
-            .as_ref()
-            .filter(|near| near.profile == *tool.profile && near.moved(tip, tool) + reach <= near.bound);
+        let known = near[slot].as_ref().filter(|near| near.holds_within(reach, tip, tool));
         let seen;
         let parts = match known {
             Some(near) => &near.parts,
