@@ -179,6 +179,7 @@ pub(super) fn run(
         look_for_end: 1,
         creeping: Creeping::default(),
         revolutions: 0,
+        mark: None,
         before: None,
     };
     march.run(patience)
@@ -208,6 +209,7 @@ struct March<'a> {
     look_for_end: usize,
     creeping: Creeping,
     revolutions: u32,
+    mark: Option<never_met::Mark>,
     before: Option<Before<'a>>,
 }
 

@@ -4,6 +4,7 @@
 use apt_geometry::motion::{AxisAngle, ToolAxis};
 
 use super::{turning::proven, *};
+use crate::clearance::JUDGED;
 
 /// A start-up with an upright tool, and a motion with its axis at an angle to the part surface, in several bands.
 fn leads_out(
@@ -56,4 +57,41 @@ fn a_ball_that_turns_out_from_under_a_leaning_wall_does_not_go_round() {
         ToolAxis::AtAngle { part: true, angle: 6.73166947025627f64.to_radians(), mode: AxisAngle::Plain };
     let (place, ahead) = (v(-0.95693284363318, -9.39082394879633, 8.5438982041032), v(0.58029, 0.81441, 0.0));
     leads_out(&[5.0877964082064, 2.5438982041032], &ball, place, (axis, ahead), [&wall, &check]);
+}
+
+/// A ball between two hollow walls has no vector that turns it to its law, nor does any way over which it turns lead on from rings, none of which comes by
+/// where the motion began: they are known by coming by another place of them, long before NUMPTS ends them.
+#[test]
+fn a_ring_that_does_not_come_by_its_beginning_is_known() {
+    let part = Geometry::Ellipse(Quadric {
+        coefficients: [
+            0.10263239893938525,
+            0.11405222097328417,
+            0.0,
+            -0.7100472125010168,
+            0.0,
+            0.0,
+            0.05302915276296229,
+            -0.08880412299778531,
+            0.09000859984426257,
+            0.0,
+        ],
+    });
+    let drive = cylinder(v(-1.9386431902287073, 5.713785108059961, 0.0), Vec3::z(), 7.973649782007439);
+    let mut p = Program::new();
+    p.tolerance(0.0005, 0.0).cutter(&[0.7242105779376009, 0.36210528896880045]);
+    p.run(&MotionCommand::From {
+        position: v(-1.1297070615906304, -0.18212986010127064, -0.9951309565212969),
+        axis: Some(v(0.9573255113971181, 0.28901187731345307, 0.0)),
+        name: String::new(),
+    });
+    let mode = AxisAngle::Lead(-0.12054945666084964);
+    p.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: true, angle: 0.23082206781400508, mode }));
+    p.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::On, &level(-0.6657554385397013))]);
+    p.side(DriveSide::Left).indirv(0.0, 0.0, -1.0);
+    let before = JUDGED.get();
+    let failure = p.attempt(&motion(Turn::Forward, &drive, &[(Relation::On, 1, &level(-3.1))])).unwrap_err();
+    let judged = JUDGED.get() - before;
+    assert!(matches!(failure, MotionFailure::NoAdmissibleVector { .. }), "{failure:?}");
+    assert!(judged < 20_000, "{judged} vectors judged");
 }

@@ -5,6 +5,21 @@ use apt_geometry::Vec3;
 use super::{March, Vertex, Watcher};
 use crate::error::{Course, MotionFailure, TurnsBack};
 
+/// How many bands a path may be aside from a vertex that it comes by again: it goes at either limit of both of them.
+const BANDS_ASIDE: f64 = 4.0;
+/// The number of the first vertex that is marked: what goes on is not compared with that which just began.
+const FIRST_MARK: usize = 16;
+
+/// A vertex that the path may come by again.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mark {
+    vertex: Vertex,
+    /// Its place among the points.
+    index: usize,
+    /// How many positions and tangencies had been met there.
+    met: usize,
+}
+
 impl March<'_> {
     /// On a closed path: a whole turn without a single position means that there is none.
     pub(super) fn count_revolution(
@@ -13,30 +28,58 @@ impl March<'_> {
         from: &Vertex,
         to: &Vertex,
     ) -> Result<(), MotionFailure> {
-        let delta = to.tip - from.tip;
-        let length = delta.norm();
-        if self.points.len() < 3 || length <= 0.0 {
+        if self.points.len() < 3 {
             return Ok(());
         }
-        let along = (start.tip - from.tip).dot(&delta) / length;
-        let aside = (start.tip - from.tip - delta * (along / length)).norm();
-        let band = self.prepared.part.band() + self.prepared.drive.band();
-        // At the end of the vector, as just beyond a corner, the path may lead elsewhere.
-        let is_along = delta.dot(&start.tangent) > 0.5 * length;
-        let passed = along > 0.0 && along <= length && aside <= 4.0 * band && is_along;
-        if !passed {
+        self.go_round(from, to)?;
+        if !self.passes(start, [from, to]) {
             return Ok(());
         }
         self.revolutions += 1;
         let wanted = self.checks.iter().map(|c| c.occurrence).max().unwrap_or(1);
         if self.watcher.met == 0 && self.tangency.met == 0 || self.revolutions > wanted {
-            let vertices = std::iter::once(&start.tip).chain(&self.points);
-            let length = vertices.clone().zip(vertices.skip(1)).map(|(a, b)| (b - a).norm()).sum();
-            let nothing = (f64::INFINITY, start.tip, 0);
-            let met = self.watcher.met + self.tangency.met;
-            return Err(self.never_met(nothing, Course::Closed { length }, met));
+            return Err(self.closed(start, 0));
         }
         Ok(())
+    }
+
+    /// The same of a ring that does not come by where the motion began, as that of a tool that turned on its way there: it comes by a vertex again, with
+    /// no position since. Each vertex is marked that has twice the number of the one before, so that the last one is on the ring some time, and a
+    /// turn later the path is there again.
+    fn go_round(&mut self, from: &Vertex, to: &Vertex) -> Result<(), MotionFailure> {
+        let (count, met) = (self.points.len(), self.watcher.met + self.tangency.met);
+        // A vertex that has been moved since is marked anew where it is now.
+        let mark = self.mark.filter(|mark| self.points.get(mark.index) == Some(&mark.vertex.tip));
+        if let Some(Mark { vertex, index, met: met_there }) = &mark
+            && met == *met_there
+            && self.passes(vertex, [from, to])
+        {
+            return Err(self.closed(vertex, index + 1));
+        }
+        if count >= mark.map_or(FIRST_MARK, |mark| 2 * (mark.index + 1)) {
+            self.mark = Some(Mark { vertex: *to, index: count - 1, met });
+        }
+        Ok(())
+    }
+
+    /// Whether a vector passes a vertex of the path, in the direction that it had there.
+    fn passes(&self, vertex: &Vertex, [from, to]: [&Vertex; 2]) -> bool {
+        let delta = to.tip - from.tip;
+        let length = delta.norm();
+        let along = (vertex.tip - from.tip).dot(&delta) / length;
+        let aside = (vertex.tip - from.tip - delta * (along / length)).norm();
+        let band = self.prepared.part.band() + self.prepared.drive.band();
+        // At the end of the vector, as just beyond a corner, the path may lead elsewhere.
+        let is_along = delta.dot(&vertex.tangent) > 0.5 * length;
+        along > 0.0 && along <= length && aside <= BANDS_ASIDE * band && is_along
+    }
+
+    /// The path comes by a vertex again that so many of its points lead to.
+    fn closed(&self, vertex: &Vertex, index: usize) -> MotionFailure {
+        let vertices = std::iter::once(&vertex.tip).chain(&self.points[index..]);
+        let length = vertices.clone().zip(vertices.skip(1)).map(|(a, b)| (b - a).norm()).sum();
+        let nothing = (f64::INFINITY, vertex.tip, 0);
+        self.never_met(nothing, Course::Closed { length }, self.watcher.met + self.tangency.met)
     }
 
     /// The evidence: the positions met, if they were too few, or the nearest approach on the cut vectors made and on the way
