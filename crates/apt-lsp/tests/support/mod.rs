@@ -138,12 +138,14 @@ impl Server {
         answer["text"].as_str().unwrap().to_owned()
     }
 
-    /// The most memory that the process ever had, bytes.
+    /// The most memory that the process ever had, bytes, and the part of that which shows its program file: that grows only.
     #[cfg(target_os = "linux")]
-    pub(crate) fn most_resident(&self) -> u64 {
+    pub(crate) fn most_resident(&self) -> [u64; 2] {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).unwrap();
-        let line = status.lines().find(|line| line.starts_with("VmHWM:")).unwrap();
-        line.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() << 10
+        ["VmHWM:", "RssFile:"].map(|name| {
+            let line = status.lines().find(|line| line.starts_with(name)).unwrap();
+            line.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() << 10
+        })
     }
 
     /// Closes the server's input.
