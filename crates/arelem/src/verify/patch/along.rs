@@ -64,8 +64,10 @@ impl Run {
 /// `U` and `V` there, and the patch falls by half of `a²·n·Uu + 2ab·n·Uv + b²·n·Vv`. With the means `u` and `v` of the derivatives and the
 /// vectors `p` and `q` in their plane for which `p·u = q·v = 1` and `p·v = q·u = 0`,
 ///
-///     a(1 + p·(U − u)) + b p·(V − v) = p·w − (p·n)(n·w),
-///     a q·(U − u) + b(1 + q·(V − v)) = q·w − (q·n)(n·w).
+/// ```text
+/// a(1 + p·(U − u)) + b p·(V − v) = p·w − (p·n)(n·w),
+/// a q·(U − u) + b(1 + q·(V − v)) = q·w − (q·n)(n·w).
+/// ```
 ///
 /// So `a` is no farther from `p·w`, and `b` from `q·w`, than what is not 1 there, and the last products, make them.
 pub(in crate::verify) struct Falling {
