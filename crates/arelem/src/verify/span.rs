@@ -389,15 +389,17 @@ impl Span<'_> {
     /// Whether a few readings of such a share of a vector tell as much as a closer bound of the bend, which takes as long; for a tool without width that
     /// tells far more.
     fn is_soon_told(&self, bend: &Bend, share: f64) -> bool {
-        let pieces = FEW_PIECES / share;
-        self.clearance.profile.widest() > 0.0
-            && bend.rate <= 8.0 * pieces * pieces * (self.band[1] - self.band[0])
+        self.clearance.profile.widest() > 0.0 && self.is_filled_by(FEW_PIECES / share, bend)
     }
 
     /// Whether a bound of the bend tells something, for such a share of a vector: beside the tip of what is nearly a cone it does
     /// not.
     fn tells(&self, bend: &Bend, share: f64) -> bool {
-        let pieces = PIECES * share;
+        self.is_filled_by(PIECES * share, bend)
+    }
+
+    /// Whether so many pieces of the vector fill the band at most, as a parabola does.
+    fn is_filled_by(&self, pieces: f64, bend: &Bend) -> bool {
         bend.rate <= 8.0 * pieces * pieces * (self.band[1] - self.band[0])
     }
 
