@@ -32,6 +32,7 @@ mod sculptured;
 mod sharp_corners;
 pub(crate) mod sheets;
 mod spared;
+mod spared_at_stops;
 mod tangencies;
 mod troughs;
 mod turning;

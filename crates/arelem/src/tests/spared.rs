@@ -477,3 +477,42 @@ fn a_stretch_that_is_read_to_be_a_little_too_full_spares_a_vector() {
     let vectors = p.last().points.len();
     assert!(vectors <= 30, "{vectors} vectors");
 }
+
+/// In a corner inside of a sphere and a cylinder contact is told by the surface along which the path goes on, against whose direction a vector leads that
+/// comes there: one of two that led there was kept, for it seemed to lead back.
+#[test]
+fn one_vector_leads_to_a_corner() {
+    let part = sphere(
+        1.362_219_309_076_593_5,
+        -3.623_235_705_172_475,
+        1.154_383_423_719_558_5,
+        3.012_668_140_466_124,
+    );
+    let drive = cylinder(
+        v(1.965_278_098_319_826_6, -6.988_419_893_667_692, -5.161_154_024_064_017),
+        v(-0.976_154_437_744_431, -0.198_778_085_687_867_45, -0.087_234_089_220_446_29),
+        5.970_697_418_778_5,
+    );
+    let stop = Geometry::Cone(Cone {
+        vertex: v(-1.813_819_625_799_773, -4.170_401_639_754_055, 1.705_275_522_763_497_5),
+        axis: v(0.236_774_808_918_956_53, 0.495_272_991_970_634_1, -0.835_848_283_653_108_8),
+        cosine: 0.906_361_719_157_105_4,
+    });
+    let mut p = standing(
+        &[1.077_550_193_047_028, 0.131_235_655_943_461_65],
+        [0.001; 2],
+        v(1.013_070_057_774_574, -1.490_377_571_576_388_3, -0.147_289_052_641_248_92),
+        v(0.384_991_912_950_288_5, -0.531_755_063_250_481_7, 0.754_332_671_750_570_3),
+    );
+    p.run(&MotionCommand::Thickness(PerRole::all(0.103_547_892_689_997_66)));
+    p.run(&MotionCommand::PartSurface(named(&part))).go(&[(To, &drive)]);
+    p.side(DriveSide::Right).indirv(
+        -0.885_401_889_790_536_7,
+        -0.418_609_439_599_909_9,
+        0.202_063_432_201_860_8,
+    );
+    p.run(&motion(Turn::Forward, &drive, &[(To, 2, &stop)]));
+    p.verified();
+    // There were 50.
+    assert!(p.last().points.len() <= 49, "{} vectors", p.last().points.len());
+}

@@ -8,16 +8,12 @@ use std::ops::Range;
 
 use apt_geometry::Vec3;
 
-use super::{
-    March, Vertex, first_stop,
-    spared::{hand_of, is_onward},
-    tangency,
-};
+use super::{March, Vertex, first_stop, spared::hand_of, surface_end::just_ahead, tangency};
 use crate::{
     attitude::Sweep,
     bound::{self, Bent},
     clearance::Shape,
-    directed::stop::Watcher,
+    directed::stop::{Event, Watcher},
     error::MotionFailure,
     role::{Bend, Working},
 };
@@ -70,8 +66,34 @@ struct Reached {
     vertex: Vertex,
     along: f64,
     old: Vec3,
+    /// On which hand a vector to it keeps both surfaces: to a vertex that was in a corner of the path the one that led there may have kept them on the
+    /// other one, for contact is told on the way out of it.
+    hand: Option<f64>,
     /// Index of the one before.
     from: usize,
+}
+
+/// What is met along the vectors of a path.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Met {
+    /// A stop, on a vector of some length (of the bands at least) behind which there are so many.
+    Stop { check: usize, tip: Vec3, length: f64, ahead: usize },
+    /// So many positions and tangencies, none of which stops the motion.
+    Positions(usize),
+}
+
+impl Met {
+    /// Whether the same is met as along another path, a stop no farther from that than its vector is long.
+    pub(super) fn is_as(&self, other: &Self) -> bool {
+        match (*self, *other) {
+            (
+                Self::Stop { check, tip, ahead, .. },
+                Self::Stop { check: other, tip: place, length, ahead: behind },
+            ) => check == other && ahead == behind && (tip - place).norm() <= length,
+            (Self::Positions(met), Self::Positions(other)) => met == other,
+            _ => false,
+        }
+    }
 }
 
 /// Vectors in whose place fewer are looked for.
@@ -120,20 +142,27 @@ impl March<'_> {
         if !self.is_wasteful(fills.iter().sum::<f64>()) {
             return Ok(());
         }
-        // Of several positions on a check surface each counts as the vectors meet it; the last vector leads to that which stops the motion.
+        // Of several positions on a check surface each counts as the vectors meet it.
         let met = self.met_along(&positions)?;
-        if met != Some(0) {
-            fills.pop();
+        for searched in [fills.len(), fills.len() - 1] {
+            self.save_among(start, &fills[..searched])?;
+            positions.splice(1.., self.points.iter().copied());
+            if self.met_along(&positions)?.is_as(&met) {
+                break;
+            }
+            self.points.clone_from(&before);
         }
+        Ok(())
+    }
+
+    /// Saves vectors among the first ones, which fill so much of one each.
+    fn save_among(&mut self, start: &Vertex, fills: &[f64]) -> Result<(), MotionFailure> {
         let mut left = (MOST_TRIED * fills.len().min(FEW) as u32, vec![false; fills.len()]);
+        let mut fills = fills.to_vec();
         for _ in 0..MOST_ROUNDS {
             if !self.save_apart(start, &mut fills, &mut left)? {
                 break;
             }
-        }
-        positions.splice(1.., self.points.iter().copied());
-        if self.met_along(&positions)? != met {
-            self.points = before;
         }
         Ok(())
     }
@@ -144,28 +173,29 @@ impl March<'_> {
         self.points.len() as f64 > least * (1.0 + MORE) + BESIDES
     }
 
-    /// How many positions and tangencies are met along all vectors but the last; `None` if one of them stops the motion.
-    pub(super) fn met_along(&self, positions: &[Vec3]) -> Result<Option<usize>, MotionFailure> {
+    /// What is met along vectors.
+    pub(super) fn met_along(&self, positions: &[Vec3]) -> Result<Met, MotionFailure> {
         let mut watcher = Watcher::new(self.prepared, self.checks);
         let mut tangency = tangency::Watch::new(self.prepared, self.checks, self.stepper.patience());
         let axis = &self.prepared.tool.axis;
-        for pair in positions[..positions.len() - 1].windows(2) {
+        for (k, pair) in positions.windows(2).enumerate() {
             if self.stepper.patience().is_over() {
                 return Err(MotionFailure::Cancelled);
             }
             let sweep = Sweep::new(&self.prepared.tool, (&pair[0], axis), (&pair[1], axis));
-            let is_stopped = if tangency.has_any() {
+            let stop = if tangency.has_any() {
                 let way = pair[1] - pair[0];
                 let [from, to] = [pair[0], pair[1]].map(|tip| Vertex::at(self.prepared, tip, &way));
-                first_stop((&mut watcher, &mut tangency), &sweep, [&from?, &to?])?.is_some()
+                first_stop((&mut watcher, &mut tangency), &sweep, [&from?, &to?])?
             } else {
-                watcher.scan(&sweep).is_some()
+                watcher.scan(&sweep)
             };
-            if is_stopped {
-                return Ok(None);
+            if let Some(Event { check, tip, .. }) = stop {
+                let (length, ahead) = (sweep.length.max(just_ahead(self.prepared)), positions.len() - 2 - k);
+                return Ok(Met::Stop { check, tip, length, ahead });
             }
         }
-        Ok(Some(watcher.met + tangency.met))
+        Ok(Met::Positions(watcher.met + tangency.met))
     }
 
     /// Saves a vector in stretches that are apart, beginning with the one that leaves the most room; whether there was one. So many vectors may still be
@@ -191,6 +221,9 @@ impl March<'_> {
             if let Some((count, between)) = self.fewer_from(start, k, &fills[k..k + vectors], left)? {
                 is_changed[k..k + count].fill(true);
                 found.push((k, count, between));
+            } else if k + vectors == fills.len() {
+                // From no vertex on the way to the end there are fewer.
+                is_tried[k..].fill(true);
             }
         }
         found.sort_by_key(|(k, ..)| std::cmp::Reverse(*k));
@@ -229,7 +262,8 @@ impl March<'_> {
             along += (tip - before).norm();
             let way = old[(k + 1).min(old.len() - 1)] - before;
             let vertex = Vertex::at(self.prepared, *tip, &way)?;
-            were.push(Reached { vertex, along, old: *tip, from: 0 });
+            let hand = hand_of(&vertex, &(tip - before));
+            were.push(Reached { vertex, along, old: *tip, hand, from: 0 });
         }
         let Some(hand) = hand_of(&were[0].vertex, &(old[1] - old[0])) else { return Ok(None) };
         let [part, drive] = [&self.prepared.part, &self.prepared.drive].map(levels);
@@ -359,7 +393,7 @@ impl March<'_> {
         let Column { along, old, sense, places } = &mut stretch.columns[column];
         let settled = || Vertex::settled_at(self.prepared, at, old, sense);
         let vertex = (*places[level].get_or_insert_with(settled))?;
-        Some(Reached { vertex, along: *along, old: *old, from: 0 })
+        Some(Reached { vertex, along: *along, old: *old, hand: Some(stretch.hand), from: 0 })
     }
 
     /// Whether a vector from one place to another one leads onward and keeps the bands.
@@ -370,7 +404,8 @@ impl March<'_> {
             || to.along <= from.along
             || length > self.state.maximum_step * (1.0 + ROUNDING)
             || way.dot(&old) <= LEAST_ONWARD * length * old.norm()
-            || !is_onward(Some(stretch.hand), &from.vertex, &to.vertex)
+            || hand_of(&from.vertex, &way) != Some(stretch.hand)
+            || hand_of(&to.vertex, &way) != to.hand
         {
             return false;
         }

@@ -77,7 +77,7 @@ impl March<'_> {
         let along = |points: &[Vec3]| -> Vec<Vec3> {
             std::iter::once(start.tip).chain(points.iter().copied()).collect()
         };
-        if self.met_along(&along(&self.points))? != self.met_along(&along(&before))? {
+        if !self.met_along(&along(&self.points))?.is_as(&self.met_along(&along(&before))?) {
             self.points = before;
         }
         Ok(())
