@@ -1,5 +1,6 @@
 //! Motion programs as hand-built commands: worked cases, the shapes of the oracle corpus, and properties.
 
+mod along_ends;
 mod axis_modes;
 mod barrels;
 mod behind_ends;

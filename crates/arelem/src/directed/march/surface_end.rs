@@ -83,16 +83,14 @@ impl SurfaceEnd {
         end
     }
 
-    /// Whether the path of a line, which leads over the end here, turns along it within the bands, as where its top passes below the end:
-    /// beyond that it touches the end with its side, along which the place of contact goes. A path that leads over the end does not get on,
-    /// or leaves that place behind. It is looked at as far outside the surfaces as the bands allow: at the end itself contact has no one
-    /// direction.
+    /// Whether the path, which leads over the end here, turns along it within the bands, as where the tool comes to touch the end with another place,
+    /// by which it goes along; or where the top of a line passes below the end: beyond that it touches the end with its side, along which the place
+    /// of contact goes. A path that leads over the end does not get on, or leaves that place behind. It is looked at as far outside the surfaces as
+    /// the bands allow: at the end itself contact has no one direction.
     fn is_gone_along(&self, prepared: &Prepared, tangent: &Vec3) -> bool {
         let Prepared { tool, part, drive, .. } = prepared;
-        // How deep a wider tool is there engine and verifier may tell differently: its motion ends.
-        if tool.radius() > 0.0 {
-            return false;
-        }
+        // How deep a wider tool is there engine and verifier may tell differently: that its place goes along does not tell enough of it.
+        let is_line = tool.radius() <= 0.0;
         let reach = just_ahead(prepared);
         let outside = [part, drive].map(|role| if role.outside > 0.0 { role.outside } else { role.rest() });
         let ahead = |from: &Vec3| Vertex::settled_at(prepared, outside, &(from + tangent * reach), tangent);
@@ -108,7 +106,8 @@ impl SurfaceEnd {
             let is_led = role.name != self.role || is_at_end(role, contact);
             // Below the bottom contact with an end that is parallel to it may be anywhere.
             let is_beside = !role.gauge.on && contact.gradient.dot(&turned.axis).abs() <= BESIDE;
-            let goes_along = is_beside && (later.surface - contact.surface).norm() >= ALONG * way.norm();
+            let goes_along =
+                is_line && is_beside && (later.surface - contact.surface).norm() >= ALONG * way.norm();
             is_led && (goes_along || !is_over(role, tool, contact, &way.normalize()))
         })
     }
