@@ -6,6 +6,8 @@
 //! holds for half-spaces, and for cylinders along a straight piece of the tool ([`super::trough`]). What cannot be shown is left to
 //! the general search.
 
+mod apart;
+
 use std::cell::Cell;
 
 use apt_geometry::Vec3;
@@ -317,25 +319,6 @@ impl Following<'_> {
         is_nearer
     }
 
-    /// Whether a part is above a plane by `least` that has the tool on its other side: along the tool where it is nearest to the
-    /// part's middle, or along the part there, with and without what of that leads round the tool axis.
-    fn is_above(&self, part: &Part, side: f64, least: f64) -> bool {
-        let [middle, along, across] = jet(&part.net, [0.5; 2]);
-        let from = middle - self.tip;
-        let (apart, nearest) = self.tool.signed_distance(&from);
-        let is_above = |outward: &Vec3| {
-            let base = outward.dot(self.tip) + self.tool.support(outward).0 + least;
-            part.net.as_flattened().iter().all(|p| outward.dot(p) >= base)
-        };
-        let own = (from - nearest).try_normalize(0.0).map(|away| away * apart.signum());
-        let level = along.cross(&across).try_normalize(0.0).map(|normal| normal * -part.sense(side));
-        own.is_some_and(|outward| is_above(&outward))
-            || level.is_some_and(|level| {
-                self.tool.without_azimuth(&from, &level).is_some_and(|outward| is_above(&outward))
-                    || is_above(&level)
-            })
-    }
-
     /// Shows that a part is no nearer than is wanted, from its own contact; in halves if need be.
     fn show(&self, part: &Part, index: usize, side: f64, shown: &Shown<'_>, halvings: u32) -> Option<()> {
         let Shown { guards, below, least, place } = *shown;
@@ -465,13 +448,18 @@ impl Following<'_> {
     }
 
     /// From where a contact is followed that is near a place: somewhat beyond where the surface is nearest to the tool there, on the
-    /// side away from the tool axis, where no straight piece of the tool leads back to a saddle.
+    /// side away from the tool axis, where no straight piece of the tool leads back to a saddle. All of this is told in widths of the tool,
+    /// so that for one without width nothing is beside the place.
     fn about(&self, place: &Vec3) -> Option<(usize, [f64; 2])> {
+        let widest = self.tool.profile.widest();
+        if widest <= 0.0 {
+            return self.seen_at(place);
+        }
         let mut best = self.seen(place)?;
         let from = best.1 - self.tip;
         let radial = (from - self.tool.axis * self.tool.axis.dot(&from)).try_normalize(0.0)?;
         let around = self.tool.axis.cross(&radial);
-        let mut step = self.tool.profile.widest() / f64::from(SEEN_EACH_WAY);
+        let mut step = widest / f64::from(SEEN_EACH_WAY);
         for _ in 0..NEARINGS {
             step *= 0.5;
             for way in [radial, around, -radial, -around] {
@@ -480,7 +468,7 @@ impl Following<'_> {
                 }
             }
         }
-        self.seen_at(&(best.1 + radial * (self.tool.profile.widest() * ONWARD)))
+        self.seen_at(&(best.1 + radial * (widest * ONWARD)))
     }
 
     /// How far the surface is from the tool at its place about nearest to a place, and that place of it.

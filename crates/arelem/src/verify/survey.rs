@@ -213,7 +213,7 @@ impl Sheet {
         if is_at_length && (is_thorough || near.is_shown_at_length) {
             found = near.shown(&asked, tip, tool, Manner { is_thorough: true, piece: None });
         }
-        if is_at_length && is_thorough {
+        if is_at_length && (is_thorough || near.is_shown_at_length) {
             found = found.or_else(|| near.shown_in_pieces(&asked, tip, tool));
         }
         near.is_shown_at_length = is_at_length && found.is_some();
@@ -399,6 +399,8 @@ impl Near {
         let ends = [at_end(*tip)?.0, at_end(tip + tool.axis * length)?.0];
         let mut best = if ends[0].value <= ends[1].value { ends[0] } else { ends[1] };
         let mut least = ends.map(|end| end.value - end.error).into_iter().fold(f64::INFINITY, f64::min);
+        // From its end up: one that is off the surface is on its side if the end of the one below is.
+        let mut is_clear = ends[0].value - ends[0].error > 0.0;
         let mut open = vec![[0.0, length]];
         for _ in 0..PIECES {
             let Some([low, high]) = open.pop() else {
@@ -407,17 +409,37 @@ impl Near {
             let profile = tool.profile.below(high - low);
             let (piece, from) = (tool.with(&profile), tip + tool.axis * low);
             let manner = Manner { is_thorough: true, piece: Some(best.value) };
+            let enough = best.value - asked.tolerance;
+            if is_clear && self.keeps_off(asked, &from, &piece, enough) {
+                least = least.min(enough);
+                continue;
+            }
             match self.shown(asked, &from, &piece, manner) {
                 Some(reading) => {
+                    is_clear = reading.value - reading.error > 0.0;
                     least = least.min(reading.value - reading.error);
                     if reading.value < best.value {
-                        best = reading;
+                        let place = reading.place.map(|place| place + tool.axis * low);
+                        best = Reading { place, ..reading };
                     }
                 }
                 None => open.extend([[0.5 * (low + high), high], [low, 0.5 * (low + high)]]),
             }
         }
         None
+    }
+
+    /// Whether no part is nearer to a piece of the tool than a distance, as far as balls and half-spaces tell that hold the parts: most of a
+    /// long line is far from what it touches, where contacts need not be known. Which side it is on that does not tell.
+    fn keeps_off(&self, asked: &Asked<'_>, tip: &Vec3, piece: &Tool<'_>, least: f64) -> bool {
+        let Asked { sheet, side, size, tolerance } = *asked;
+        let (loose, nearer, looks) = (&Cell::new(None), &Cell::new(None), &Cell::new(0));
+        let manner = Manner { is_thorough: false, piece: Some(least) };
+        let kept = Kept { manner, loose, nearer, looks };
+        let (parts, margin, way) = (&self.parts, self.margin, self.way);
+        let following =
+            Following { sheet, parts, margin, way, side, tip, tool: piece, size, tolerance, kept, led: None };
+        following.keeps_off(least)
     }
 
     /// Halves a part about a place of it, so that the bounds of its bends are closer there; not where they are close anyway.

@@ -1,10 +1,12 @@
 //! Ruled surfaces: against the surfaces that some of them are, dense sampling, and broken sequences.
 
+use std::cell::Cell;
+
 use apt_geometry::{
     Vec3,
     canonical::Geometry,
     motion::{DriveSide, Relation},
-    patience::Patience,
+    patience::{Patience, Waiting},
 };
 use proptest::prelude::*;
 
@@ -17,7 +19,9 @@ use super::{
         verify,
     },
     clearances::{clearance, direction, samples, tools},
-    cone, cutter, cylinder, lofts,
+    cone, cutter, cylinder,
+    lines::line,
+    lofts,
     paths::{self, BAND},
     plane, quadric, role, ruled, section, sphere, tabulated,
 };
@@ -329,6 +333,46 @@ fn a_line_along_a_hollow_is_measured_by_its_pieces() {
         let least = samples.fold(f64::INFINITY, f64::min);
         let error = found.error + 2.0 * ruled.error() + 1e-9;
         assert!((found.value - least).abs() <= error && error < 1e-5, "{found:?} {least}");
+    }
+}
+
+/// How often one may be asked whether to go on while a line is measured that leans away from what it touches: more than 140 times did not always do.
+const ASKED: u32 = 70;
+
+/// A line that touches a hollow surface with one end and leans away from it is far from it but for a little of its length, which is told by what
+/// holds the parts of the surface; and the place where it touches is told from its end, on whichever of its pieces that is.
+#[test]
+fn the_pieces_of_a_line_that_are_off_a_hollow_are_told_in_few_looks() {
+    let surface = Surface::of(&half_cone()).unwrap();
+    let Surface::Ruled(ruled) = &surface else { panic!("{surface:?}") };
+    for [low, high] in [
+        [[-0.088_949, -0.094_951, 2.831_576], [0.013_804, 0.601_478, 1.956_202]],
+        [[0.144_398, -0.085_717, 2.733_099], [-0.878_850, 1.162_340, 0.474_334]],
+        [[0.106_128, -0.123_793, 2.780_959], [0.261_334, 1.101_540, 1.037_385]],
+        [[-0.110_809, -0.035_581, 2.630_482], [0.446_691, 1.201_706, 0.777_706]],
+        [[0.113_097, -0.072_928, 2.746_306], [-0.028_282, 0.600_184, 1.957_564]],
+    ] {
+        let [low, high] = [low, high].map(Vec3::from);
+        let way = high - low;
+        let profile = line(way.norm());
+        let asked = Cell::new(0);
+        let count = || {
+            asked.set(asked.get() + 1);
+            false
+        };
+        let waiting = Waiting::until(&count);
+        let mut tool = Tool::new(&profile, way.normalize());
+        (tool.depth, tool.patience) = (0.01, waiting.patience());
+        let found = ruled.followed(1.0, &low, &tool).expect("it is shown");
+        assert!(asked.get() <= ASKED, "{low:?}: {}", asked.get());
+        let at = |height: f64| surface.point_distance(&(low + tool.axis * height)).expect("a distance").0;
+        let least = (0..=400).map(|k| at(way.norm() * f64::from(k) / 400.0)).fold(f64::INFINITY, f64::min);
+        let error = found.error + 2.0 * ruled.error() + 1e-9;
+        assert!((found.value - least).abs() <= error && error < 1e-5, "{found:?} {least}");
+        if let Some(place) = found.place {
+            let own = at(place.dot(&tool.axis));
+            assert!((own - found.value).abs() <= error, "{place:?} is as far as {own}: {found:?}");
+        }
     }
 }
 
