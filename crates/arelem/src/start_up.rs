@@ -280,11 +280,18 @@ fn settle_following(
     guide: Option<(Vec3, f64)>,
     (original, start): (&Vec3, &Vec3),
 ) -> Result<Vec3, MotionFailure> {
-    let first = settle(work, guide, start).unwrap_or(*start);
+    // Without a position with the present axis there is but the one place to set out from.
+    let reached = settle(work, guide, start).ok();
+    let first = reached.unwrap_or(*start);
     follow_surfaces(work, &(first - original), Some(first))?;
-    let nearest = match settle(work, guide, &first).or_else(|_| settle(work, guide, start)) {
+    let from_start =
+        |work: &StartUp<'_>, failure| reached.map_or(Err(failure), |_| settle(work, guide, start));
+    let nearest = match settle(work, guide, &first).or_else(|failure| from_start(work, failure)) {
         Ok(nearest) => nearest,
-        Err(failure) => return tilted_otherwise(work, guide, (original, [&first, start]), failure),
+        Err(failure) => {
+            let starts: Vec<Vec3> = reached.into_iter().chain([*start]).collect();
+            return tilted_otherwise(work, guide, (original, &starts), failure);
+        }
     };
     let mut tip = nearest;
     for _ in 0..JUDGEMENTS {
@@ -306,7 +313,7 @@ fn settle_following(
 fn tilted_otherwise(
     work: &mut StartUp<'_>,
     guide: Option<(Vec3, f64)>,
-    (original, starts): (&Vec3, [&Vec3; 2]),
+    (original, starts): (&Vec3, &[Vec3]),
     failure: MotionFailure,
 ) -> Result<Vec3, MotionFailure> {
     let judged = work.attitude.clone();

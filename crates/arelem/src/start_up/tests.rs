@@ -6,11 +6,12 @@ use Relation::{On, Past, TangentToDrive, TangentToPart, To};
 use apt_geometry::{
     Vec3,
     canonical::{Cone, Geometry, TabulatedCylinder},
-    motion::{Delta, Direction, DriveSide, MotionCommand, NamedSurface, Relation, Turn},
+    motion::{AxisAngle, Delta, Direction, DriveSide, MotionCommand, NamedSurface, Relation, ToolAxis, Turn},
 };
 
 use crate::{
     MotionFailure,
+    clearance::EVALUATIONS,
     section2::StartUpRule,
     tests::{
         Program, circle, cylinder, economy::tabulated, ground, line, named, plane, quadric, sphere, start, v,
@@ -394,4 +395,33 @@ fn images_on_a_straight_line_are_no_answers_but_what_lies_between_them() {
     p.go(&[(To, &drive)]);
     let middle = v(-0.169221435, 1.485780504, -1.487823279);
     assert!((p.tip() - middle).norm() < 0.03, "{}", p.tip());
+}
+
+/// How many times the clearances of a start-up with a fixed axis one without a position takes while the axis follows the part surface: with the
+/// present axis, with its own and, if it is tilted, with that tilted to the other side, each looked for once from the start, and somewhat more.
+const TIMES_OF_FIXED: [f64; 2] = [2.5, 3.5];
+
+/// The tool end cannot be on a small ball while the tool touches a saddle far below it: what was looked for in vain from a place is not looked for from
+/// there again.
+#[test]
+fn a_start_up_whose_axis_follows_looks_once_from_a_place_without_a_position() {
+    let saddle = quadric([0.2, -0.15, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.5]);
+    let (ball, wall) = (sphere(3.0, 2.0, 8.0, 0.5), plane(1.0, 0.0, 0.0, 3.1));
+    let clearances = |mode: ToolAxis| {
+        let mut p = Program::new();
+        p.tolerance(0.001, 0.001).cutter(&[1.0, 0.25]).from(2.5, 2.2, 6.0);
+        p.run(&MotionCommand::ToolAxis(mode));
+        let before = EVALUATIONS.get();
+        let failure = p.attempt(&start(&[(On, &ball), (To, &saddle), (On, &wall)]));
+        assert!(matches!(failure, Err(MotionFailure::StartUpDiverges { .. })), "{failure:?}");
+        (EVALUATIONS.get() - before) as f64
+    };
+    let fixed = clearances(ToolAxis::Keep);
+    let tilted = AxisAngle::PerpendicularTo(v(0.0, 1.0, 0.0));
+    let following =
+        [ToolAxis::Normal { part: true }, ToolAxis::AtAngle { part: true, angle: 0.2, mode: tilted }];
+    for (mode, times) in following.into_iter().zip(TIMES_OF_FIXED) {
+        let count = clearances(mode);
+        assert!(count <= times * fixed, "{count} with {fixed}");
+    }
 }
