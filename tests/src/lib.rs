@@ -20,11 +20,16 @@ pub fn repository(path: &str) -> PathBuf {
 pub fn run_report(path: &Path, dialect: &str) -> serde_json::Value {
     let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let file = path.file_name().and_then(|name| name.to_str()).unwrap_or("program.apt");
+    run_text(&text, file, dialect)
+}
+
+/// Runs a program under the name of a file and gives the JSON of `run --format json`.
+pub fn run_text(text: &str, file: &str, dialect: &str) -> serde_json::Value {
     let settings = std::sync::Arc::new(apt_run::settings::Settings {
         dialect: Some(dialect.to_owned()),
         ..Default::default()
     });
-    let document = apt_run::document::Document::new(&text, Some(file.to_owned()), &settings);
+    let document = apt_run::document::Document::new(text, Some(file.to_owned()), &settings);
     let report = document.report(&|| false, &mut |_, _| {}, None);
     serde_json::to_value(report.expect("not cancelled")).expect("a report is JSON")
 }

@@ -146,6 +146,13 @@ pub enum AxisCondition {
     },
 }
 
+impl AxisCondition {
+    /// Whether the axis depends on the part surface at the contact.
+    pub fn follows_part(&self) -> bool {
+        matches!(self, Self::AtAngle { reference: AxisReference::Part, .. })
+    }
+}
+
 /// SCON/FEED with four numbers; 0 writes no feed rate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FeedCondition {

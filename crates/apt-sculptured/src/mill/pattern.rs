@@ -100,9 +100,19 @@ impl Job<'_> {
         Ok(Lane { course, range })
     }
 
+    /// Where a command begins. Its axis may depend on the part, and then the very first drop has a vertical one, as in the
+    /// public system. Where no step could lead from there to where the next locations are, it is settled as those are.
     fn first_station(&self, parameters: [f64; 2], course: &Course) -> Result<Station, MillingError> {
-        self.station(parameters, course, None)
-            .map_err(|cause| MillingError::NoFirstContact { parameters, cause })
+        let failed = |cause| MillingError::NoFirstContact { parameters, cause };
+        let first = self.station(parameters, course, None).map_err(failed)?;
+        if !self.command.axis.follows_part() {
+            return Ok(first);
+        }
+        let out_of_reach = |settled: &Station| {
+            let away = (settled.center - first.center).norm();
+            away > self.greatest_move(&first, settled, course.stock)
+        };
+        Ok(self.station(parameters, course, Some(&first)).ok().filter(out_of_reach).unwrap_or(first))
     }
 
     fn position(&self, start: [f64; 2], retract: &Retract, sink: &mut Sink<'_>) -> Result<(), MillingError> {
