@@ -52,6 +52,13 @@ pub(super) struct Freed {
     encounter: Option<(Hit, Remedy)>,
 }
 
+impl Freed {
+    /// Whether the tool met anything there, so that it may stand elsewhere.
+    pub(super) fn met_anything(&self) -> bool {
+        self.encounter.is_some()
+    }
+}
+
 /// What a tilt gives.
 struct Tilted {
     angle: f64,

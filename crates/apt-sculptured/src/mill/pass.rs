@@ -5,8 +5,12 @@ use apt_geometry::regional::FeedDirection;
 use super::{
     Job, Sink,
     station::{Course, Station},
+    way::Stand,
 };
-use crate::error::{MillingError, Reduction};
+use crate::{
+    error::{MillingError, Reduction},
+    tool::Pose,
+};
 
 /// Most reductions of one step (3552).
 const MOST_REDUCTIONS: usize = 20;
@@ -18,6 +22,8 @@ const SHRINK: [f64; 2] = [0.1, 0.75];
 const JUMP: f64 = 5.0;
 /// How much longer than the last one a step may be.
 const GROWTH: f64 = 5.0;
+/// Share of MAXDP that is tried for the end of the tool.
+const CAUTION: f64 = 0.95;
 /// How often a step is halved for what stands on the way to its end, where the tolerances do not end it before.
 const MOST_HALVINGS: usize = 16;
 /// Share of a step that is not worth a step of its own at the end of a pass.
@@ -73,11 +79,16 @@ impl Job<'_> {
                         continue;
                     }
                     halvings = 0;
+                    if !found.met_anything() {
+                        self.put_between(&last.pose, &next.pose, sink)?;
+                    }
                     self.put_freed(&next, found, way, sink)?;
-                    let pace = moved / tried;
-                    let intended = self.intended_move(&next, course.stock);
-                    step = if pace > 0.0 { intended / pace } else { GROWTH * tried };
-                    step = step.min(GROWTH * tried);
+                    let intended = self.intended_move(&next, course.stock) / moved;
+                    // A tool end that swings about the ball goes farther than the ball.
+                    let swung = (next.pose.end - last.pose.end).norm();
+                    let admissible = CAUTION * self.setting.maximum_step / swung;
+                    // Where nothing moved there is no ratio, and the step just grows.
+                    step = tried * intended.min(admissible).min(GROWTH);
                     if reductions == 0 {
                         dead_ends = 0;
                     }
@@ -105,6 +116,32 @@ impl Job<'_> {
                 }
             }
         }
+    }
+
+    /// Places on the straight way between two locations, so that no move is longer than MAXDP. The ball has gone no farther
+    /// than that, but the end of the tool may: where a flat bottom lies on the surface the contact goes from one side of it
+    /// to the other at once, however short the step.
+    fn put_between(&self, from: &Pose, to: &Pose, sink: &mut Sink<'_>) -> Result<(), MillingError> {
+        // Only on from a location that was put out as it is.
+        if sink.last.is_none_or(|last| last.pose != *from) {
+            return Ok(());
+        }
+        let chord = to.end - from.end;
+        let moves = (chord.norm() / self.setting.maximum_step * (1.0 - MOVE_SLACK)).ceil();
+        if !moves.is_finite() {
+            return Ok(());
+        }
+        let clear = sink.last.is_some_and(|last| last.clear);
+        let mut done = 1.0;
+        while done < moves {
+            let share = done / moves;
+            let axis = from.axis * (1.0 - share) + to.axis * share;
+            let pose =
+                Pose { end: from.end + chord * share, axis: axis.try_normalize(0.0).unwrap_or(from.axis) };
+            sink.location(self, Stand { pose, clear })?;
+            done += 1.0;
+        }
+        Ok(())
     }
 
     /// Where a step leads: not beyond the limit, nor beyond where arcs of a guide curve meet.
