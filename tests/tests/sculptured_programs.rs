@@ -14,8 +14,23 @@ fn report(text: &str) -> Value {
 
 /// Numbers of all errors and warnings, in order; 0 where a finding has none.
 fn numbers(report: &Value) -> Vec<u64> {
-    let findings = report["diagnostics"].as_array().unwrap();
-    findings.iter().map(|finding| finding["apt3"].as_u64().unwrap_or(0)).collect()
+    let findings = report["diagnostics"].as_array().unwrap().iter();
+    findings
+        .filter(|finding| finding["severity"] != "hint")
+        .map(|finding| finding["apt3"].as_u64().unwrap_or(0))
+        .collect()
+}
+
+/// The numbers of a symbol.
+fn symbol(report: &Value, name: &str) -> Vec<f64> {
+    let values = report["symbols"][name]["canonical"].as_array().unwrap_or_else(|| panic!("{name}"));
+    values.iter().map(|value| value.as_f64().unwrap()).collect()
+}
+
+fn assert_near(report: &Value, name: &str, expected: &[f64]) {
+    let found = symbol(report, name);
+    let near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9);
+    assert!(near && found.len() == expected.len(), "{name}: {found:?}, expected {expected:?}");
 }
 
 /// All tool ends.
@@ -78,4 +93,74 @@ fn a_pass_with_its_axis_from_the_part_begins_on_a_surface_that_stands_upright() 
         // The axis leans by the angles of the statement from the normal, which is near x.
         assert!(first[3].as_f64().unwrap() > 0.8, "{sense}: {first}");
     }
+}
+
+/// Three quarters of a circle about the origin, from (5, 0) to (0, -5).
+const WIDE: &str = "SCURV/CURSEG,(POINT/5,0,0),(POINT/0,5,0),(POINT/0,-5,0)";
+
+#[test]
+fn curseg_is_one_arc_however_far_it_turns() {
+    let report = report(&format!(
+        "PARTNO WIDE\nC={WIDE}\nN=NUMF(C)\nQ0=POINT/INTOF,C,PARAM,0\nQ1=POINT/INTOF,C,PARAM,.5\n\
+         Q2=POINT/INTOF,C,PARAM,1\nT2=VECTOR/INTOF,C,PARAM,1,1,TANSPL,UNIT\nQ3=POINT/INTOF,C,PARAM,1,-1\n\
+         Q4=POINT/INTOF,(LINE/-9,0,9,0),C,(POINT/-5,0,0)\nX4=PARMF(TVAL)\nA4=PARMF(SVAL)\nG4=PARMF(C)\n\
+         Q5=POINT/INTOF,C,PARAM,X4,1\n\
+         S=SSURF/RULED,C,AXIS,(VECTOR/0,0,1)\nM=NUMF(S)\nQ6=POINT/INTOF,S,PARAM,1,.5,1\n\
+         R=SSURF/REVOLV,C,AXIS,(POINT/9,0,0),(VECTOR/0,1,0),CCLW,0,90\nK=NUMF(R)\n\
+         J=SCURV/COMBIN,C,(SCURV/CURSEG,(POINT/0,-5,0),(POINT/5,-5,0))\nL=NUMF(J)\n\
+         Q7=POINT/INTOF,J,PARAM,.5\nQ8=POINT/INTOF,J,PARAM,.5,2\nFINI\n"
+    ));
+    assert_eq!(numbers(&report), [0; 0], "{}", report["diagnostics"]);
+    let crown = -(12.5_f64).sqrt();
+    for (name, expected) in [("N", 1.0), ("M", 1.0), ("K", 1.0), ("L", 2.0), ("A4", 1.0)] {
+        assert_near(&report, name, &[expected]);
+    }
+    for (name, expected) in [
+        ("Q0", [5.0, 0.0, 0.0]),
+        ("Q1", [crown, -crown, 0.0]),
+        ("Q2", [0.0, -5.0, 0.0]),
+        ("T2", [1.0, 0.0, 0.0]),
+        ("Q3", [0.0, -5.0, 0.0]),
+        ("Q4", [-5.0, 0.0, 0.0]),
+        ("Q5", [-5.0, 0.0, 0.0]),
+        ("Q6", [0.0, -5.0, 0.0]),
+        ("Q7", [crown, -crown, 0.0]),
+        ("Q8", [2.5, -5.0, 0.0]),
+    ] {
+        assert_near(&report, name, &expected);
+    }
+    assert_eq!(symbol(&report, "X4"), symbol(&report, "G4"));
+}
+
+#[test]
+fn a_flow_along_a_wide_arc_reaches_its_end() {
+    for (kind, layout) in [("ARC", "LENGTH"), ("PARAM", "PARAM"), ("ARC", "PARAM")] {
+        let tail = format!("FLOW,{kind},0,1,SEG,{layout},0,1");
+        let report = report(&format!(
+            "PARTNO WIDE\nC={WIDE},{tail}\nD=SCURV/COMBIN,C,TRFORM,(MATRIX/TRANSL,0,0,4)\n\
+             S=SSURF/GENCUR,C,D\nQ1=POINT/INTOF,C,FLOW,.5\nQ2=POINT/INTOF,C,FLOW,1\nM=NUMF(S)\n\
+             Q3=POINT/INTOF,S,PARAM,.5,.5,1\nQ4=POINT/INTOF,S,PARAM,1,1,1\nFINI\n"
+        ));
+        assert_eq!(numbers(&report), [0; 0], "{tail}: {}", report["diagnostics"]);
+        let crown = -(12.5_f64).sqrt();
+        assert_near(&report, "M", &[1.0]);
+        assert_near(&report, "Q1", &[crown, -crown, 0.0]);
+        assert_near(&report, "Q2", &[0.0, -5.0, 0.0]);
+        assert_near(&report, "Q4", &[0.0, -5.0, 4.0]);
+        let middle = symbol(&report, "Q3");
+        assert!((middle[0].hypot(middle[1]) - 5.0).abs() < 1e-4 && (middle[0] + middle[1]).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn a_wide_arc_guides_from_its_first_to_its_last_point() {
+    let report = report(&format!(
+        "PARTNO WIDE\nCUTTER/.5,.25\nINTOL/.002\nOUTTOL/.002\nMAXDP/1\nC={WIDE}\n\
+         S=SSURF/FROM,(PLANE/0,0,1,-1),-9,9,-9,9\nSCON/DS,C,PARAM,0,1,ON,(VECTOR/0,0,-1)\nSCON/PS,TO,S,PLUS,0\n\
+         SCON/AXIS,(VECTOR/0,0,1)\nSMIL/PATH,DS,PARAM,0,0,TANSPL,PLUS\nFINI\n"
+    ));
+    assert_eq!(numbers(&report), [0; 0], "{}", report["diagnostics"]);
+    let ends = ends(&report);
+    assert!(distance(ends.first().unwrap(), &[5.0, 0.0, -1.0]) < 1e-9);
+    assert!(distance(ends.last().unwrap(), &[0.0, -5.0, -1.0]) < 1e-9);
 }

@@ -501,9 +501,20 @@ fn canonical_rows_come_back_unchanged() {
     let curve = Arc::new(definition.define().expect("a curve").geometry);
     let lofted =
         loft(vec![curve.clone(), Arc::new(curve.transformed(&Matrix::translation(Vec3::z())))], vec![]);
-    for geometry in
-        [Geometry::SpaceCurve(curve), Geometry::Sculptured(Remembering::new(lofted.expect("a surface")))]
-    {
+    // An arc of two parts after a plain one.
+    let around = [[5., 0., 0.], [0., 5., 0.], [0., -5., 0.]];
+    let wide = SpaceCurveDefinition::plain(CurveShape::Conic { nodes: nodes(&around) });
+    let line = CurveShape::Conic { nodes: nodes(&[[9., 0., 0.], [5., 0., 0.]]) };
+    let curves = [SpaceCurveDefinition::plain(line), wide]
+        .map(|definition| Arc::new(definition.define().expect("a curve").geometry));
+    let joined = SpaceCurveDefinition::plain(CurveShape::Combined { curves: curves.to_vec() });
+    let joined = joined.define().expect("a curve").geometry;
+    assert_eq!((joined.arcs.len(), joined.count()), (3, 2));
+    for geometry in [
+        Geometry::SpaceCurve(curve),
+        Geometry::SpaceCurve(Arc::new(joined)),
+        Geometry::Sculptured(Remembering::new(lofted.expect("a surface"))),
+    ] {
         let values = geometry.canonical_values();
         assert_eq!(Geometry::from_canonical(geometry.kind(), &values), Ok(geometry.clone()));
         assert!(Geometry::from_canonical(geometry.kind(), &values[1..]).is_err());

@@ -143,18 +143,14 @@ impl<'a> GuideElement<'a> {
                 GuidePoint { position: at.position, along, across, normal, projection: Vec3::zeros() }
             }
             Element::Curve { curve, .. } => {
-                let (arc, t) = curve.locate(u).ok_or(GuideError::Outside { u, v })?;
-                let at = curve.evaluate_global(u).ok_or(GuideError::Outside { u, v })?;
-                let end = |index: usize| curve.cross.get(index).copied().flatten();
-                let across = match (end(arc), end(arc + 1)) {
-                    (Some(first), Some(last)) => first * (1.0 - t) + last * t,
-                    (Some(one), None) | (None, Some(one)) => one,
-                    (None, None) => Vec3::zeros(),
-                };
+                let parameter = curve.unnumbered(u);
+                let (arc, _) = curve.locate(parameter).ok_or(GuideError::Outside { u, v })?;
+                let at = curve.evaluate_global(parameter).ok_or(GuideError::Outside { u, v })?;
+                let across = curve.given_cross_at(parameter).unwrap_or_else(Vec3::zeros);
                 let normal = across.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
                 GuidePoint {
                     position: at.position,
-                    along: at.first,
+                    along: at.first * curve.rate(arc),
                     across,
                     normal,
                     projection: Vec3::zeros(),

@@ -20,7 +20,8 @@ const PATCH_VALUES: usize = 68;
 const CURVE_HEAD: usize = 3;
 /// Numbers of an arc: four control points of four coordinates.
 const ARC_VALUES: usize = 16;
-/// Numbers of a cross direction: whether there is one, and its components.
+/// Numbers of an end of arcs: whether there is a cross direction, and its components. Where two arcs are one as the language
+/// numbers them, the first is minus the share of it that lies before.
 const CROSS_VALUES: usize = 4;
 /// Numbers of a range of the flow: kind, tolerance, point, direction, first and last arc.
 const RANGE_VALUES: usize = 10;
@@ -181,7 +182,10 @@ pub(super) fn curve_values(curve: &SpaceCurve) -> Vec<f64> {
     for index in 0..=curve.arcs.len() {
         let cross = curve.cross.get(index).copied().flatten();
         let vector = cross.unwrap_or_else(Vec3::zeros);
-        values.extend([f64::from(u8::from(cross.is_some())), vector.x, vector.y, vector.z]);
+        let end = curve.numbered(index as f64);
+        // Inside of an arc as the language numbers them there is no cross direction of its own.
+        let given = if end.fract() > 0.0 { -end.fract() } else { f64::from(u8::from(cross.is_some())) };
+        values.extend([given, vector.x, vector.y, vector.z]);
     }
     for range in ranges {
         let (kind, tolerance, point, direction) = match range.kind {
@@ -201,6 +205,22 @@ pub(super) fn curve_values(curve: &SpaceCurve) -> Vec<f64> {
         values.extend([measure, segment.first, segment.last]);
     }
     values
+}
+
+/// Where arcs end as the language numbers them, from the first values of the ends: negative shares lie inside of an arc.
+fn breaks(firsts: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut whole = 0.0;
+    let mut breaks = Vec::new();
+    for first in firsts {
+        if first > -1.0 && first < 0.0 {
+            breaks.push(whole - 1.0 - first);
+        } else {
+            breaks.push(whole);
+            whole += 1.0;
+        }
+    }
+    let plain = breaks.iter().all(|end: &f64| end.fract() == 0.0);
+    if plain { Vec::new() } else { breaks }
 }
 
 /// The curve of a row.
@@ -268,6 +288,7 @@ pub(super) fn curve_from(values: &[f64]) -> Result<SpaceCurve, CanonicalError> {
     let segments = (0..segments).map(segment).collect::<Result<Vec<_>, _>>()?;
     Ok(SpaceCurve {
         arcs: (0..arcs).map(|index| CurveArc { control: control(index) }).collect(),
+        breaks: breaks((0..=arcs).map(|index| at(cross_first + CROSS_VALUES * index))),
         cross: (0..=arcs).map(cross).collect(),
         flow: (!segments.is_empty()).then_some(Flow { ranges, segments }),
     })

@@ -83,7 +83,23 @@ fn ruled(curve: &SpaceCurve, axis: &AxisInput) -> Result<SculpturedSurface, Para
     let patch = |arc: &CurveArc| Patch::between(&arc.shifted(&-reach), &arc.shifted(&reach));
     let patches: Vec<Patch> = curve.arcs.iter().map(patch).collect();
     let columns = patches.len();
-    Ok(meshed(patches, (columns, 1)))
+    Ok(numbered(meshed(patches, (columns, 1)), curve, None))
+}
+
+/// A surface whose columns are the arcs of a curve, and whose rows may be those of another one: with patches as the language
+/// numbers the arcs.
+pub(super) fn numbered(
+    mut surface: SculpturedSurface,
+    along: &SpaceCurve,
+    across: Option<&SpaceCurve>,
+) -> SculpturedSurface {
+    surface.breaks.clone_from(&along.breaks);
+    surface.mesh.cross_splines = along.count() + 1;
+    if let Some(across) = across {
+        surface.row_breaks.clone_from(&across.breaks);
+        surface.mesh.splines = across.count() + 1;
+    }
+    surface
 }
 
 fn multiplied(product: CurveProduct, profile: &SpaceCurve, control: &SpaceCurve) -> SculpturedSurface {
@@ -107,7 +123,7 @@ fn multiplied(product: CurveProduct, profile: &SpaceCurve, control: &SpaceCurve)
             patches.push(Patch { control: net });
         }
     }
-    meshed(patches, (profile.arcs.len(), control.arcs.len()))
+    numbered(meshed(patches, (profile.arcs.len(), control.arcs.len())), profile, Some(control))
 }
 
 fn combined(surfaces: &[Remembering<SculpturedSurface>]) -> Result<SculpturedSurface, ParametricError> {

@@ -229,11 +229,17 @@ impl ParametricQuery {
                 ParametricQuery::CurveParameter { curve, .. } | ParametricQuery::CurvePlane { curve, .. },
                 ParametricPlace::Curve { arc, local, global, .. },
             ) => {
-                let at = curve.arcs.get(arc - 1).ok_or(ParametricError::NoDirection)?.evaluate(local);
+                let (index, t) = curve.within(arc, local).ok_or(ParametricError::NoDirection)?;
+                let mut at = curve.arcs.get(index).ok_or(ParametricError::NoDirection)?.evaluate(t);
+                let rate = curve.rate(index);
+                if rate != 1.0 {
+                    (at.first, at.second) = (at.first * rate, at.second * (rate * rate));
+                }
+                let cross = curve.cross_at(curve.unnumbered(global));
                 match kind {
                     ParametricDirection::Tangent => at.first,
-                    ParametricDirection::Cross => curve.cross_at(global),
-                    ParametricDirection::Normal => curve.cross_at(global).cross(&at.first),
+                    ParametricDirection::Cross => cross,
+                    ParametricDirection::Normal => cross.cross(&at.first),
                     ParametricDirection::Binormal => at.frame().binormal * at.first.cross(&at.second).norm(),
                 }
             }
@@ -262,16 +268,17 @@ fn curve_parameter(
 ) -> Result<ParametricPlace, ParametricError> {
     match kind {
         CurveParameter::Param => {
-            let count = curve.arcs.len();
+            let count = curve.count();
             let number = part(number, count)?;
-            if number == 0 {
-                inside(value, curve.extent())?;
-                let (arc, local) = curve.locate(value).ok_or(ParametricError::NoDirection)?;
-                return curve_place(curve, arc, local);
-            }
-            inside(value, 1.0)?;
-            let arc = if number < 0 { count } else { number as usize };
-            curve_place(curve, arc - 1, value.clamp(0.0, 1.0))
+            let found = if number == 0 {
+                inside(value, count as f64)?;
+                curve.locate(curve.unnumbered(value))
+            } else {
+                inside(value, 1.0)?;
+                curve.within(if number < 0 { count } else { number as usize }, value)
+            };
+            let (arc, local) = found.ok_or(ParametricError::NoDirection)?;
+            curve_place(curve, arc, local)
         }
         CurveParameter::Flow => {
             let flow = curve.flow.as_ref().ok_or(ParametricError::NoFlow { curve: 1 })?;
@@ -296,9 +303,12 @@ fn curve_parameter(
 /// The place of an arc (index).
 fn curve_place(curve: &SpaceCurve, arc: usize, local: f64) -> Result<ParametricPlace, ParametricError> {
     let at = curve.arcs.get(arc).ok_or(ParametricError::NoDirection)?.evaluate(local);
-    let global = arc as f64 + local;
-    let flow = curve.flow.as_ref().and_then(|flow| flow.flow_parameter(curve, global));
-    Ok(ParametricPlace::Curve { position: at.position, arc: arc + 1, local, global, flow })
+    let parameter = arc as f64 + local;
+    let flow = curve.flow.as_ref().and_then(|flow| flow.flow_parameter(curve, parameter));
+    let (global, start) = (curve.numbered(parameter), curve.numbered(arc as f64).floor());
+    // Where each arc is one of the language the local parameter stays what it was.
+    let local = if curve.breaks.is_empty() { local } else { global - start };
+    Ok(ParametricPlace::Curve { position: at.position, arc: start as usize + 1, local, global, flow })
 }
 
 impl ParametricPlace {
@@ -314,7 +324,7 @@ impl ParametricCount {
     /// What NUMF gives of a curve; `None` if curves have no such number.
     pub fn of_curve(self, curve: &SpaceCurve) -> Option<usize> {
         match self {
-            ParametricCount::Arcs => Some(curve.arcs.len()),
+            ParametricCount::Arcs => Some(curve.count()),
             ParametricCount::Segments => Some(curve.flow.as_ref().map_or(0, |flow| flow.segments.len())),
             _ => None,
         }

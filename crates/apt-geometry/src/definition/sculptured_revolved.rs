@@ -7,7 +7,7 @@ use nalgebra::{Rotation3, Unit, Vector4};
 use super::{
     parametric_error::ParametricError,
     sculptured::{AxisInput, Turning},
-    sculptured_define::meshed,
+    sculptured_define::{meshed, numbered},
 };
 use crate::{
     Vec3,
@@ -61,7 +61,7 @@ pub(super) fn surface(
             patches.push(Patch { control: arc.control.map(|at| turned(&at, &point, &axis, middle, half)) });
         }
     }
-    Ok(meshed(patches, (curve.arcs.len(), rows)))
+    Ok(numbered(meshed(patches, (curve.arcs.len(), rows)), curve, None))
 }
 
 /// The control points along v of the circle that a homogeneous point runs through, `half` to either side of `middle`.

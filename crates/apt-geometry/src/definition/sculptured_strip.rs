@@ -181,7 +181,7 @@ impl Strand<'_> {
         if part.measure != SegmentMeasure::Param {
             return None;
         }
-        let along = |local: f64| part.first + (part.last - part.first) * local;
+        let along = |local: f64| part.along(self.curve, local);
         let (index, _) = self.curve.locate(along(0.5 * (from + to)))?;
         let local = |parameter: f64| (along(parameter) - index as f64).clamp(0.0, 1.0);
         Some(self.curve.arcs.get(index)?.between(local(from), local(to)))

@@ -1,13 +1,16 @@
 //! CURSEG: the conic arc through points with directions, up to five conditions.
 //!
 //! Two conditions make a line, three a circle, four the ellipse of least eccentricity, five the conic. The arc is one
-//! rational cubic; where it turns by two thirds of a turn or more it takes two, because the weights of one would not be
-//! positive.
+//! rational cubic; where it turns by two thirds of a turn or more the weights of one would not be positive, and it is kept
+//! as its two parts, which count as one arc and have its parameter.
 
 use nalgebra::{DMatrix, Matrix2, Matrix3, Vector2, Vector4, Vector6};
 
 use super::{parametric_error::ParametricError, space_curve::ParametricNode};
-use crate::{Vec3, parametric::CurveArc};
+use crate::{
+    Vec3,
+    parametric::{CurveArc, SpaceCurve},
+};
 
 /// Most conditions of a conic.
 const MOST_CONDITIONS: usize = 5;
@@ -25,6 +28,9 @@ type Place = Vector2<f64>;
 /// `A x² + B xy + C y² + D x + E y + F`.
 type Conic = Vector6<f64>;
 
+/// A place times its weight, and the weight.
+type Weighted = (Place, f64);
+
 /// The plane of a curve.
 struct Frame {
     origin: Vec3,
@@ -40,11 +46,11 @@ struct Condition {
     sense: bool,
 }
 
-/// The arcs of CURSEG.
+/// The curve of CURSEG.
 ///
 /// # Errors
 /// Too few or too many conditions, points on a line or off a plane, or data that no conic arc takes in their order.
-pub(super) fn arcs(nodes: &[ParametricNode]) -> Result<Vec<CurveArc>, ParametricError> {
+pub(super) fn curve(nodes: &[ParametricNode]) -> Result<SpaceCurve, ParametricError> {
     let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
         return Err(ParametricError::TooFew { least: 2, found: 0 });
     };
@@ -65,7 +71,7 @@ pub(super) fn arcs(nodes: &[ParametricNode]) -> Result<Vec<CurveArc>, Parametric
         }
     }
     if conditions == 2 {
-        return Ok(vec![CurveArc::segment(&first.point, &last.point)]);
+        return Ok(SpaceCurve::of_arcs(vec![CurveArc::segment(&first.point, &last.point)]));
     }
     let frame = Frame::of(nodes, extent)?;
     let data: Vec<Condition> = nodes.iter().map(|node| frame.condition(node)).collect();
@@ -74,8 +80,13 @@ pub(super) fn arcs(nodes: &[ParametricNode]) -> Result<Vec<CurveArc>, Parametric
         4 => least_eccentric(&data)?,
         _ => unique(&data)?,
     };
-    let pieces = pieces(&conic, &data)?;
-    Ok(pieces.iter().map(|piece| piece.lifted(&frame)).collect())
+    let piece = piece(&conic, &data)?;
+    if piece.is_short() {
+        return Ok(SpaceCurve::of_arcs(vec![lifted(piece.control(), &frame)]));
+    }
+    let crown = piece.crown();
+    let curve = SpaceCurve::of_arcs(piece.cut(crown).map(|part| lifted(part, &frame)).to_vec());
+    Ok(SpaceCurve { breaks: vec![0.0, crown, 1.0], ..curve })
 }
 
 impl Frame {
@@ -289,69 +300,59 @@ impl Piece {
         least > LEAST_WEIGHT * (balance * balance).max(1.0)
     }
 
-    /// Both halves of an arc that turns too far for one cubic.
-    fn halved(&self, conic: &Conic) -> Result<[Piece; 2], ParametricError> {
-        let crown = (self.first + self.middle * 2.0 + self.last) / (2.0 + 2.0 * self.weight);
-        // A weight of −1 or less runs through infinity.
-        if self.weight <= DEPENDENT - 1.0 {
-            return Err(ParametricError::NoConicArc);
-        }
-        let [before, _] = Piece::both(conic, self.first, crown)?;
-        let [after, _] = Piece::both(conic, crown, self.last)?;
-        Ok([before, after])
+    /// Control points times their weights, and the weights.
+    fn control(&self) -> [Weighted; 3] {
+        let balance = self.balance();
+        let square = balance * balance;
+        [(self.first, 1.0), (self.middle * balance, self.weight * balance), (self.last * square, square)]
     }
 
-    /// The arc in space.
-    fn lifted(&self, frame: &Frame) -> CurveArc {
-        let balance = self.balance();
-        let first = frame.homogeneous(&self.first, 1.0);
-        let middle = frame.homogeneous(&self.middle, self.weight) * balance;
-        let last = frame.homogeneous(&self.last, 1.0) * (balance * balance);
-        CurveArc { control: [first, (first + middle * 2.0) / 3.0, (middle * 2.0 + last) / 3.0, last] }
+    /// The parameter at which both parts have positive weights: the crown seen from both ends.
+    fn crown(&self) -> f64 {
+        1.0 / (1.0 + self.balance())
+    }
+
+    /// The parts before and after a parameter.
+    fn cut(&self, t: f64) -> [[Weighted; 3]; 2] {
+        let between = |a: Weighted, b: Weighted| (a.0 * (1.0 - t) + b.0 * t, a.1 * (1.0 - t) + b.1 * t);
+        let [first, middle, last] = self.control();
+        let (before, after) = (between(first, middle), between(middle, last));
+        let at = between(before, after);
+        [[first, before, at], [at, after, last]]
     }
 }
 
-/// The pieces of the conic from the first to the last place through the others in order.
-fn pieces(conic: &Conic, data: &[Condition]) -> Result<Vec<Piece>, ParametricError> {
+/// The arc in space of control points in the plane.
+fn lifted(control: [Weighted; 3], frame: &Frame) -> CurveArc {
+    let [first, middle, last] = control.map(|(place, weight)| frame.homogeneous(&place, weight));
+    CurveArc { control: [first, (first + middle * 2.0) / 3.0, (middle * 2.0 + last) / 3.0, last] }
+}
+
+/// The piece of the conic from the first to the last place that takes the inner places in order; without such places the one
+/// that runs in the sense of the first tangent, or where there is none of the last one.
+fn piece(conic: &Conic, data: &[Condition]) -> Result<Piece, ParametricError> {
     let (Some(start), Some(end)) = (data.first(), data.last()) else {
         return Err(ParametricError::TooFew { least: 2, found: data.len() });
     };
     let inner = data.get(1..data.len() - 1).unwrap_or_default();
-    let choices = Piece::both(conic, start.place, end.place)?
-        .map(|piece| if piece.is_short() { Ok(vec![piece]) } else { piece.halved(conic).map(Vec::from) });
-    chosen(choices, start, inner, end)
-}
-
-/// The first choice that takes the inner places in order; without such places the one that runs in the sense of the first
-/// tangent, or where there is none of the last one.
-fn chosen(
-    choices: [Result<Vec<Piece>, ParametricError>; 2],
-    start: &Condition,
-    inner: &[Condition],
-    end: &Condition,
-) -> Result<Vec<Piece>, ParametricError> {
-    for pieces in choices.into_iter().flatten() {
+    for piece in Piece::both(conic, start.place, end.place)? {
+        // A weight of −1 or less runs through infinity.
+        if piece.weight <= DEPENDENT - 1.0 {
+            continue;
+        }
         let mut reached = 0.0;
         let in_order = inner.iter().all(|condition| {
-            let found = pieces
-                .iter()
-                .enumerate()
-                .find_map(|(index, piece)| Some(index as f64 + piece.parameter(&condition.place)?));
             let before = reached;
-            reached = found.unwrap_or(f64::NEG_INFINITY);
+            reached = piece.parameter(&condition.place).unwrap_or(f64::NEG_INFINITY);
             reached > before
         });
-        let along = |condition: &Condition, way: Option<Place>| match (condition.direction, way) {
-            (Some(direction), Some(way)) if condition.sense => Some(direction.dot(&way) > 0.0),
+        let along = |condition: &Condition, way: Place| match condition.direction {
+            Some(direction) if condition.sense => Some(direction.dot(&way) > 0.0),
             _ => None,
         };
-        let sense = || {
-            along(start, pieces.first().map(Piece::way))
-                .or_else(|| along(end, pieces.last().map(Piece::last_way)))
-                .unwrap_or(true)
-        };
+        let sense = || along(start, piece.way()).or_else(|| along(end, piece.last_way())).unwrap_or(true);
         if in_order && (!inner.is_empty() || sense()) {
-            return Ok(pieces);
+            return Ok(piece);
         }
     }
     Err(ParametricError::NoConicArc)

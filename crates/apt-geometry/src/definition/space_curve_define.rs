@@ -14,7 +14,7 @@ use super::{
 use crate::{
     Vec3,
     canonical::Matrix,
-    parametric::{CurveArc, Flow, FlowKind, FlowRange, FlowSegment, SpaceCurve},
+    parametric::{Flow, FlowKind, FlowRange, FlowSegment, SpaceCurve},
 };
 
 /// Most points of a spline.
@@ -59,7 +59,7 @@ fn moved(curve: &SpaceCurve, matrix: &Matrix) -> Result<SpaceCurve, ParametricEr
 
 fn shape(shape: &CurveShape, warnings: &mut Vec<ParametricError>) -> Result<SpaceCurve, ParametricError> {
     match shape {
-        CurveShape::Conic { nodes } => Ok(with_cross(space_curve_conic::arcs(nodes)?, nodes)),
+        CurveShape::Conic { nodes } => Ok(with_cross(space_curve_conic::curve(nodes)?, nodes)),
         CurveShape::Spline { weight, limit, nodes } => spline_curve(nodes, *weight, *limit),
         CurveShape::Combined { curves } => combined(curves, warnings),
         CurveShape::Bounded { base, from, to, z_surface } => {
@@ -72,8 +72,7 @@ fn shape(shape: &CurveShape, warnings: &mut Vec<ParametricError>) -> Result<Spac
 }
 
 /// A curve whose ends have the cross directions of the first and the last point.
-fn with_cross(arcs: Vec<CurveArc>, nodes: &[ParametricNode]) -> SpaceCurve {
-    let mut curve = SpaceCurve::of_arcs(arcs);
+fn with_cross(mut curve: SpaceCurve, nodes: &[ParametricNode]) -> SpaceCurve {
     if let (Some(first), Some(last)) = (nodes.first(), nodes.last()) {
         let count = curve.cross.len();
         curve.cross[0] = first.cross;
@@ -103,7 +102,8 @@ fn spline_curve(
         .zip(directions.windows(2))
         .map(|(ends, ways)| spline::bending_arc(&ends[0], &ends[1], &ways[0], &ways[1]))
         .collect();
-    Ok(SpaceCurve { arcs, cross: nodes.iter().map(|node| node.cross).collect(), flow: None })
+    let cross = nodes.iter().map(|node| node.cross).collect();
+    Ok(SpaceCurve { cross, ..SpaceCurve::of_arcs(arcs) })
 }
 
 fn combined(
@@ -113,7 +113,8 @@ fn combined(
     if curves.is_empty() {
         return Err(ParametricError::TooFew { least: 1, found: 0 });
     }
-    let mut joined = SpaceCurve { arcs: Vec::new(), cross: Vec::new(), flow: None };
+    let mut joined = SpaceCurve { arcs: Vec::new(), breaks: Vec::new(), cross: Vec::new(), flow: None };
+    let mut breaks = vec![0.0];
     for (index, curve) in curves.iter().enumerate() {
         if let (Some(before), Some(after)) = (joined.arcs.last(), curve.arcs.first()) {
             let gap = (before.evaluate(1.0).position - after.evaluate(0.0).position).norm();
@@ -122,6 +123,8 @@ fn combined(
             }
         }
         joined.arcs.extend(curve.arcs.iter().copied());
+        let before = breaks.last().copied().unwrap_or(0.0);
+        breaks.extend((1..=curve.arcs.len()).map(|end| before + curve.numbered(end as f64)));
         let mut cross = curve.cross.iter().copied();
         if index > 0 {
             // The joint belongs to both: the earlier curve's direction counts, if it has one.
@@ -131,6 +134,9 @@ fn combined(
             }
         }
         joined.cross.extend(cross);
+    }
+    if curves.iter().any(|curve| !curve.breaks.is_empty()) {
+        joined.breaks = breaks;
     }
     // A single curve keeps its flow: it is a copy.
     if let [single] = curves {
@@ -150,7 +156,7 @@ fn flow(
     if ranges.is_empty() {
         return Err(ParametricError::SegmentsWithoutFlow);
     }
-    let count = curve.arcs.len() as f64;
+    let count = curve.count() as f64;
     let mut built = Vec::with_capacity(ranges.len());
     let mut before = None;
     for (index, range) in ranges.iter().enumerate() {
@@ -161,8 +167,9 @@ fn flow(
             }
         }
         before = Some(range.last);
-        let kind = flow_kind(curve, &range.measure, range.first)?;
-        built.push(FlowRange { kind, first: range.first as usize, last: range.last as usize });
+        let [first, last] = [range.first, range.last].map(|end| curve.unnumbered(end));
+        let kind = flow_kind(curve, &range.measure, first)?;
+        built.push(FlowRange { kind, first: first.round() as usize, last: last.round() as usize });
     }
     let (low, high) = (ranges.first().map_or(0.0, |range| range.first), before.unwrap_or(count));
     let mut before = None;
@@ -175,7 +182,8 @@ fn flow(
             }
         }
         before = Some(segment.last);
-        cut.push(FlowSegment { measure: segment.measure, first: segment.first, last: segment.last });
+        let [first, last] = [segment.first, segment.last].map(|end| curve.unnumbered(end));
+        cut.push(FlowSegment { measure: segment.measure, first, last });
     }
     let flow = Flow { ranges: built, segments: cut };
     flow.check(curve).map_err(|range| ParametricError::FlowNotMonotone { number: range + 1 })?;

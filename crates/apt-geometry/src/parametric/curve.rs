@@ -18,6 +18,9 @@ const STRAIGHT: f64 = 1e-9;
 pub struct SpaceCurve {
     /// The arcs in order.
     pub arcs: Vec<CurveArc>,
+    /// Where the arcs end as the language numbers them, beginning with 0; empty where each is one of its arcs. An arc that
+    /// turns too far for positive weights is made of two, and counts as one.
+    pub breaks: Vec<f64>,
     /// The cross directions (CRSSPL) at the ends of the arcs, one more than there are arcs, where given.
     pub cross: Vec<Option<Vec3>>,
     /// The second parameter, where the definition has FLOW.
@@ -44,7 +47,66 @@ impl SpaceCurve {
     /// A curve of arcs without cross directions and flow.
     pub fn of_arcs(arcs: Vec<CurveArc>) -> SpaceCurve {
         let cross = vec![None; arcs.len() + 1];
-        SpaceCurve { arcs, cross, flow: None }
+        SpaceCurve { arcs, breaks: Vec::new(), cross, flow: None }
+    }
+
+    /// How many arcs the language counts.
+    pub fn count(&self) -> usize {
+        self.breaks.last().map_or(self.arcs.len(), |end| end.round() as usize)
+    }
+
+    /// Where an arc (index) begins and ends as the language numbers parameters.
+    fn range(&self, arc: usize) -> [f64; 2] {
+        match (self.breaks.get(arc), self.breaks.get(arc + 1)) {
+            (Some(first), Some(last)) => [*first, *last],
+            _ => [arc as f64, arc as f64 + 1.0],
+        }
+    }
+
+    /// How fast the parameter of an arc (index) grows with the one that the language numbers.
+    pub fn rate(&self, arc: usize) -> f64 {
+        let [first, last] = self.range(arc);
+        1.0 / (last - first)
+    }
+
+    /// The global parameter as the language numbers it, from that of the arcs.
+    pub fn numbered(&self, parameter: f64) -> f64 {
+        if self.breaks.is_empty() {
+            return parameter;
+        }
+        let index = (parameter.max(0.0) as usize).min(self.arcs.len().saturating_sub(1));
+        let ([first, last], share) = (self.range(index), parameter - index as f64);
+        // The end is that of the list, not what rounding makes of it.
+        if share >= 1.0 { last } else { first + (last - first) * share }
+    }
+
+    /// The global parameter of the arcs, from the one that the language numbers.
+    pub fn unnumbered(&self, parameter: f64) -> f64 {
+        if self.breaks.is_empty() {
+            return parameter;
+        }
+        let last = self.arcs.len().max(1);
+        let index = self.breaks.partition_point(|end| *end <= parameter).clamp(1, last) - 1;
+        let [first, last] = self.range(index);
+        index as f64 + (parameter - first) / (last - first)
+    }
+
+    /// The arc (index) and its parameter at a parameter of an arc as the language numbers them (from 1): the end of one is not
+    /// the start of the next.
+    pub fn within(&self, number: usize, local: f64) -> Option<(usize, f64)> {
+        let local = local.clamp(0.0, 1.0);
+        if self.breaks.is_empty() {
+            return (number >= 1 && number <= self.arcs.len()).then(|| (number - 1, local));
+        }
+        let start = number.checked_sub(1)? as f64;
+        let parameter = start + local;
+        let inside = |arc: &usize| {
+            let [first, last] = self.range(*arc);
+            first >= start && last >= parameter && last <= start + 1.0
+        };
+        let index = (0..self.arcs.len()).find(inside)?;
+        let [first, last] = self.range(index);
+        Some((index, ((parameter - first) / (last - first)).clamp(0.0, 1.0)))
     }
 
     /// The greatest global parameter, the number of arcs.
@@ -74,12 +136,22 @@ impl SpaceCurve {
     /// The cross direction at a global parameter: between the given ones of an arc in proportion, the one of an end where
     /// only that is given, and [`SpaceCurve::DEFAULT_CROSS`] without any.
     pub fn cross_at(&self, parameter: f64) -> Vec3 {
-        let Some((index, t)) = self.locate(parameter) else { return Self::DEFAULT_CROSS };
-        let given = |index: usize| self.cross.get(index).copied().flatten();
-        match (given(index), given(index + 1)) {
-            (Some(first), Some(last)) => first * (1.0 - t) + last * t,
-            (Some(one), None) | (None, Some(one)) => one,
-            (None, None) => Self::DEFAULT_CROSS,
+        self.given_cross_at(parameter).unwrap_or(Self::DEFAULT_CROSS)
+    }
+
+    /// The same where a cross direction is given; `None` also outside the curve.
+    pub fn given_cross_at(&self, parameter: f64) -> Option<Vec3> {
+        let (arc, t) = self.locate(parameter)?;
+        let [first, last] = self.range(arc);
+        let (number, share) = (first.floor(), (first + (last - first) * t - first.floor()).min(1.0));
+        let given = |number: f64| {
+            let arc = self.unnumbered(number).round() as usize;
+            self.cross.get(arc).copied().flatten()
+        };
+        match (given(number), given(number + 1.0)) {
+            (Some(first), Some(last)) => Some(first * (1.0 - share) + last * share),
+            (Some(one), None) | (None, Some(one)) => Some(one),
+            (None, None) => None,
         }
     }
 
@@ -102,6 +174,7 @@ impl SpaceCurve {
     pub fn transformed(&self, matrix: &Matrix) -> SpaceCurve {
         SpaceCurve {
             arcs: self.arcs.iter().map(|arc| arc.transformed(matrix)).collect(),
+            breaks: self.breaks.clone(),
             cross: self.cross.iter().map(|cross| cross.map(|vector| matrix.apply_vector(&vector))).collect(),
             flow: self.flow.as_ref().map(|flow| flow.transformed(matrix)),
         }

@@ -60,6 +60,17 @@ pub struct FlowSegment {
     pub last: f64,
 }
 
+impl FlowSegment {
+    /// The global parameter of the arcs at a share of the segment, in proportion to the parameter that the language numbers.
+    pub fn along(&self, curve: &SpaceCurve, share: f64) -> f64 {
+        if curve.breaks.is_empty() {
+            return self.first + (self.last - self.first) * share;
+        }
+        let (first, last) = (curve.numbered(self.first), curve.numbered(self.last));
+        curve.unnumbered(first + (last - first) * share)
+    }
+}
+
 /// Ranges and segments of a curve's flow. The global flow parameter is the index of the segment plus the local one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
@@ -232,7 +243,7 @@ impl Flow {
     /// The global parameter of the arcs at a local parameter of a segment (index); `None` if there is no such segment.
     pub fn arc_parameter(&self, curve: &SpaceCurve, segment: usize, local: f64) -> Option<f64> {
         let segment = self.segments.get(segment)?;
-        let along = |share: f64| segment.first + (segment.last - segment.first) * share;
+        let along = |share: f64| segment.along(curve, share);
         let total = self.amount(curve, segment.first, segment.last);
         if segment.measure == SegmentMeasure::Param || total <= 0.0 || local <= 0.0 || local >= 1.0 {
             return Some(along(local.clamp(0.0, 1.0)));
@@ -268,7 +279,7 @@ impl Flow {
     /// Derivative of the arcs' parameter by the local parameter of a segment, at a place of an arc (index).
     pub fn pace(&self, curve: &SpaceCurve, segment: usize, arc: usize, t: f64) -> f64 {
         let Some(part) = self.segments.get(segment) else { return 0.0 };
-        let even = part.last - part.first;
+        let even = (curve.numbered(part.last) - curve.numbered(part.first)) * curve.rate(arc);
         let total = self.amount(curve, part.first, part.last);
         let (Some(range), Some(arc), SegmentMeasure::Length) =
             (self.range_of(arc), curve.arcs.get(arc), part.measure)
@@ -287,7 +298,10 @@ impl Flow {
         let total = self.amount(curve, segment.first, segment.last);
         let local = match segment.measure {
             SegmentMeasure::Length if total > 0.0 => self.amount(curve, segment.first, parameter) / total,
-            _ => (parameter - segment.first) / (segment.last - segment.first),
+            _ => {
+                let first = curve.numbered(segment.first);
+                (curve.numbered(parameter) - first) / (curve.numbered(segment.last) - first)
+            }
         };
         Some(index as f64 + local)
     }

@@ -193,7 +193,7 @@ fn sentence(geometry: &Geometry) -> String {
             let measure = FlowKind::Arc { tolerance: 0.0 };
             let length: f64 = curve.arcs.iter().map(|arc| measure.amount(arc, 0.0, 1.0)).sum();
             let arcs =
-                if curve.arcs.len() == 1 { "1 arc".to_owned() } else { format!("{} arcs", curve.arcs.len()) };
+                if curve.count() == 1 { "1 arc".to_owned() } else { format!("{} arcs", curve.count()) };
             format!("space curve of {arcs}, {} long{ends}, inside {}", number(length), within(points))
         }
     }

@@ -120,7 +120,7 @@ fn beyond(guide: &Guide) -> Option<FindingKind> {
             outside(name, 'u', u, along).or_else(|| outside(name, 'v', v, across))
         }
         Guide::Curve { curve: NamedSurface { name, geometry: Geometry::SpaceCurve(curve) }, u } => {
-            outside(name, 'u', u, curve.extent())
+            outside(name, 'u', u, curve.count() as f64)
         }
         _ => None,
     }

@@ -249,7 +249,7 @@ fn count(reader: &mut Reader<'_>) -> Read<f64> {
         Geometry::SpaceCurve(curve) if word == "SEG" => {
             curve.flow.as_ref().map_or(0, |flow| flow.segments.len())
         }
-        Geometry::SpaceCurve(curve) => curve.arcs.len(),
+        Geometry::SpaceCurve(curve) => curve.count(),
         Geometry::Sculptured(surface) => match word {
             "SPLINE" => surface.mesh.splines,
             "CRSSPL" => surface.mesh.cross_splines,
