@@ -164,3 +164,39 @@ fn a_wide_arc_guides_from_its_first_to_its_last_point() {
     assert!(distance(ends.first().unwrap(), &[5.0, 0.0, -1.0]) < 1e-9);
     assert!(distance(ends.last().unwrap(), &[0.0, -5.0, -1.0]) < 1e-9);
 }
+
+/// The message of the only error.
+fn the_error(text: &str) -> String {
+    let report = report(text);
+    let findings = report["diagnostics"].as_array().unwrap();
+    let errors: Vec<&Value> = findings.iter().filter(|finding| finding["severity"] == "error").collect();
+    assert_eq!(errors.len(), 1, "{text}: {errors:?}");
+    errors[0]["message"].as_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_point_takes_each_qualifier_once_and_only_those_of_its_curve() {
+    for (form, word) in [
+        ("SCURV/CURSEG,P,WEIGHT,.5,Q", "WEIGHT"),
+        ("SCURV/CURSEG,P,Q,LIMIT,.5", "LIMIT"),
+        ("SCURV/SPLINE,P,TANSPL,V,TANSPL,V,Q", "TANSPL"),
+        ("SCURV/SPLINE,P,NORMAL,V,CRSSPL,V,NORMAL,V,Q", "NORMAL"),
+        ("SCURV/SPLINE,WEIGHT,.5,WEIGHT,.4,P,Q", "WEIGHT"),
+        ("SSURF/SMESH,XYZ,SPLINE,P,CRSSPL,V,CRSSPL,V,Q,SPLINE,R,Q", "CRSSPL"),
+    ] {
+        let text = format!(
+            "PARTNO T\nP=POINT/0,0,0\nQ=POINT/4,1,0\nR=POINT/0,3,0\nV=VECTOR/1,1,2\nC={form}\nFINI\n"
+        );
+        let message = the_error(&text);
+        assert!(message.ends_with(&format!("not the word {word}")), "{form}: {message}");
+    }
+}
+
+#[test]
+fn every_row_of_another_length_is_told() {
+    let message = the_error(
+        "PARTNO T\nP=POINT/0,0,0\nQ=POINT/4,1,0\nR=POINT/0,3,0\nU=POINT/4,4,0\nW=POINT/8,0,0\n\
+         S=SSURF/SMESH,XYZ,SPLINE,P,Q,W,SPLINE,R,U,SPLINE,P,Q,W,SPLINE,P,Q,W,U\nFINI\n",
+    );
+    assert!(message.ends_with("row 2 has 2 points, row 4 has 4 and the first one 3"), "{message}");
+}

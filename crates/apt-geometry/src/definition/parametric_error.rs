@@ -94,14 +94,12 @@ pub enum ParametricError {
     #[error("AXIS takes a vector or two points here")]
     AxisForm,
     /// Rows of SMESH with different numbers of points.
-    #[error("row {row} has {found} points, the first one {expected}")]
+    #[error("rows and their numbers of points {rows:?}, the first one {expected}")]
     RowLength {
-        /// Number of the row, from 1.
-        row: usize,
         /// Points of the first row.
         expected: usize,
-        /// Its points.
-        found: usize,
+        /// The rows with another number, from 1, and their points.
+        rows: Vec<(usize, usize)>,
     },
     /// A row of SMESH whose points do not lie on a line in the plane of the heights.
     #[error("row {row} is not straight in its plane")]

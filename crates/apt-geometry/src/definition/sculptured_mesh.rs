@@ -110,8 +110,10 @@ impl Net {
         if rows.len() < 2 || expected < 2 {
             return Err(ParametricError::TooFew { least: 2, found: rows.len().min(expected) });
         }
-        if let Some(index) = rows.iter().position(|row| row.len() != expected) {
-            return Err(ParametricError::RowLength { row: index + 1, expected, found: rows[index].len() });
+        let lengths = rows.iter().enumerate().map(|(index, row)| (index + 1, row.len()));
+        let others: Vec<_> = lengths.filter(|(_, length)| *length != expected).collect();
+        if !others.is_empty() {
+            return Err(ParametricError::RowLength { expected, rows: others });
         }
         let points = faired(rows)?;
         let along = points

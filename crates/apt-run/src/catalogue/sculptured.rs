@@ -113,8 +113,13 @@ fn reason(error: &Error) -> String {
             format!("what range {number} of the flow measures does not grow all along the curve")
         }
         Error::AxisForm => "AXIS has a point and a vector".to_owned(),
-        Error::RowLength { row, expected, found } => {
-            format!("row {row} has {found} points and the first one {expected}")
+        Error::RowLength { expected, rows } => {
+            let told = rows.iter().enumerate().map(|(index, (row, found))| {
+                let points = if index == 0 { " points" } else { "" };
+                format!("row {row} has {found}{points}")
+            });
+            let told: Vec<String> = told.collect();
+            format!("{} and the first one {expected}", told.join(", "))
         }
         Error::RowNotStraight { row } => {
             format!("row {row} is not straight in the plane over which its points are heights")

@@ -22,10 +22,12 @@ const MEASURES: &[&str] = &["ARC", "PARAM", "CHORD", "ANGLE"];
 /// What segments are laid out by.
 const LAYOUTS: &[&str] = &["LENGTH", "PARAM"];
 
-/// The qualifiers behind points.
-pub(super) fn is_qualifier(word: &str) -> bool {
-    matches!(word, "TANSPL" | "NORMAL" | "CRSSPL" | "WEIGHT" | "LIMIT")
-}
+/// The qualifiers behind points of CURSEG.
+const OF_CONICS: &[&str] = &["TANSPL", "NORMAL", "CRSSPL"];
+/// The qualifiers behind points of SPLINE, in curves and meshes.
+const OF_SPLINES: &[&str] = &["TANSPL", "NORMAL", "CRSSPL", "WEIGHT", "LIMIT"];
+/// What stands before the first point of SPLINE for all of them.
+const OF_ALL: &[&str] = &["WEIGHT", "LIMIT"];
 
 /// Reads what follows SCURV.
 pub(super) fn definition(
@@ -34,7 +36,7 @@ pub(super) fn definition(
 ) -> Read<SpaceCurveDefinition> {
     let shape = match reader.word(SHAPES)? {
         "SPLINE" => spline(reader)?,
-        "CURSEG" => CurveShape::Conic { nodes: nodes(reader)? },
+        "CURSEG" => CurveShape::Conic { nodes: nodes(reader, OF_CONICS)? },
         "COMBIN" => CurveShape::Combined { curves: reader.curves()? },
         "SEG" => bounded(reader, z_surface)?,
         "NURBS" => nurbs(reader)?,
@@ -65,13 +67,13 @@ pub(super) fn transformation(reader: &mut Reader<'_>) -> Read<Option<Matrix>> {
 /// `[WEIGHT,w][,LIMIT,l],p1[,…],…`: before the first point for all points.
 fn spline(reader: &mut Reader<'_>) -> Read<CurveShape> {
     let [weight, limit] = fairing(reader)?;
-    Ok(CurveShape::Spline { weight, limit, nodes: nodes(reader)? })
+    Ok(CurveShape::Spline { weight, limit, nodes: nodes(reader, OF_SPLINES)? })
 }
 
 /// A row of a mesh, which is written like a spline.
 pub(super) fn row(reader: &mut Reader<'_>) -> Read<Vec<ParametricNode>> {
     let [weight, limit] = fairing(reader)?;
-    let mut nodes = nodes(reader)?;
+    let mut nodes = nodes(reader, OF_SPLINES)?;
     for node in &mut nodes {
         node.weight = node.weight.or(weight);
         node.limit = node.limit.or(limit);
@@ -82,19 +84,22 @@ pub(super) fn row(reader: &mut Reader<'_>) -> Read<Vec<ParametricNode>> {
 /// `[WEIGHT,w][,LIMIT,l],` in any order: weight and limit of all points.
 fn fairing(reader: &mut Reader<'_>) -> Read<[Option<f64>; 2]> {
     let (mut weight, mut limit) = (None, None);
-    while let Some(word @ ("WEIGHT" | "LIMIT")) = reader.peek_word() {
+    while let Some(word) = reader.peek_word().filter(|word| OF_ALL.contains(word)) {
+        let value = if word == "WEIGHT" { &mut weight } else { &mut limit };
+        if value.is_some() {
+            break;
+        }
         reader.skip();
-        let value = reader.scalar()?;
-        *(if word == "WEIGHT" { &mut weight } else { &mut limit }) = Some(value);
+        *value = Some(reader.scalar()?);
     }
     Ok([weight, limit])
 }
 
 /// Points with their qualifiers, at least one.
-fn nodes(reader: &mut Reader<'_>) -> Read<Vec<ParametricNode>> {
-    let mut nodes = vec![node(reader)?];
+fn nodes(reader: &mut Reader<'_>, qualifiers: &[&str]) -> Read<Vec<ParametricNode>> {
+    let mut nodes = vec![node(reader, qualifiers)?];
     while reader.peek().and_then(Item::point).is_some() {
-        nodes.push(node(reader)?);
+        nodes.push(node(reader, qualifiers)?);
     }
     match reader.peek() {
         // A number or other geometry where the next point should be.
@@ -103,10 +108,20 @@ fn nodes(reader: &mut Reader<'_>) -> Read<Vec<ParametricNode>> {
     }
 }
 
-/// One point with its qualifiers, in any order.
-fn node(reader: &mut Reader<'_>) -> Read<ParametricNode> {
+/// One point with its qualifiers, each once and in any order.
+fn node(reader: &mut Reader<'_>, qualifiers: &[&str]) -> Read<ParametricNode> {
     let mut node = ParametricNode::plain(reader.point()?);
-    while let Some(word) = reader.peek_word().filter(|word| is_qualifier(word)) {
+    while let Some(word) = reader.peek_word().filter(|word| qualifiers.contains(word)) {
+        let again = match word {
+            "TANSPL" => node.tangent.is_some(),
+            "NORMAL" => node.normal.is_some(),
+            "CRSSPL" => node.cross.is_some(),
+            "WEIGHT" => node.weight.is_some(),
+            _ => node.limit.is_some(),
+        };
+        if again {
+            break;
+        }
         reader.skip();
         match word {
             "TANSPL" => node.tangent = Some(reader.any_vector()?),
