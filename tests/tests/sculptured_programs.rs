@@ -165,6 +165,25 @@ fn a_wide_arc_guides_from_its_first_to_its_last_point() {
     assert!(distance(ends.last().unwrap(), &[0.0, -5.0, -1.0]) < 1e-9);
 }
 
+#[test]
+fn a_pass_begins_at_a_pole_and_ends_at_one() {
+    for (start, sense) in [(0, "PLUS"), (1, "MINUS")] {
+        let report = report(&format!(
+            "PARTNO POLES\nMULTAX\nCUTTER/1,.5\nINTOL/.002\nOUTTOL/.002\nMAXDP/2\n\
+             C=SCURV/CURSEG,(POINT/0,0,-5),(POINT/5,0,0),(POINT/0,0,5)\n\
+             S=SSURF/REVOLV,C,AXIS,(POINT/0,0,0),(VECTOR/0,0,1),CCLW,0,360\n\
+             SCON/DS,S,PARAM,0,1,0,3,AT,NORMAL\nSCON/PS,TO,S,MINUS,0\nSCON/AXIS,NORMDS,MINUS\n\
+             SMIL/PATH,DS,PARAM,{start},.5,TANSPL,{sense}\nFINI\n"
+        ));
+        assert_eq!(numbers(&report), [0; 0], "{sense}: {}", report["diagnostics"]);
+        let ends = ends(&report);
+        let (bottom, top) = ([0.0, 0.0, -5.0], [0.0, 0.0, 5.0]);
+        let [first, last] = if start == 0 { [bottom, top] } else { [top, bottom] };
+        assert!(distance(ends.first().unwrap(), &first) < 0.003, "{sense}: {:?}", ends.first());
+        assert!(distance(ends.last().unwrap(), &last) < 0.003, "{sense}: {:?}", ends.last());
+    }
+}
+
 /// The message of the only error.
 fn the_error(text: &str) -> String {
     let report = report(text);

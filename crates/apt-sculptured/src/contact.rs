@@ -25,6 +25,8 @@ const RESIDUAL: f64 = 1e-12;
 const SINGULAR: f64 = 1e-10;
 /// Local parameters from which searches start in each patch, in both directions.
 const STARTS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+/// Share of the way to the middle of its patch by which a search leaves a pole, where a parameter leads nowhere.
+const INWARD: f64 = 1e-3;
 /// A contact so far outside of a patch, in its parameters, lies on the extension of the surface.
 const OUTSIDE: f64 = 1e-9;
 /// What a search from one place counts in units of work.
@@ -135,6 +137,7 @@ impl RollingBall<'_> {
         };
         let mut place = settled(surface, start);
         let mut distance = f64::INFINITY;
+        let mut left_pole = false;
         for _ in 0..MOST_STEPS {
             let here = self.offset(surface, &place).ok_or(NoContact { distance })?;
             let f = residual(&here);
@@ -147,7 +150,13 @@ impl RollingBall<'_> {
             let (a, b) = (here.by_u.dot(&first), here.by_v.dot(&first));
             let (c, d) = (here.by_u.dot(&second), here.by_v.dot(&second));
             let determinant = a * d - b * c;
-            if determinant.abs() <= SINGULAR * here.at.du.norm() * here.at.dv.norm() {
+            let regular = determinant.abs() > SINGULAR * here.at.du.norm() * here.at.dv.norm();
+            if !regular && !left_pole && here.at.regular_normal().is_none() {
+                left_pole = true;
+                place.parameters = place.parameters.map(|p| p + INWARD * (0.5 - p));
+                continue;
+            }
+            if !regular {
                 return Err(NoContact { distance });
             }
             let step = [(b * f[1] - d * f[0]) / determinant, (c * f[0] - a * f[1]) / determinant];
