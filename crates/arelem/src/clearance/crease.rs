@@ -238,10 +238,12 @@ impl Beside<'_> {
     }
 
     /// The contact with an edge over which the tool comes off the surface on its own side. Within a tool that is a line there is no edge: it is
-    /// behind it by as much as it is away from it.
+    /// behind it by as much as it is away from it. A way out that is longer than the tool is no depth of it: drawn back along its axis it is out of
+    /// all that it is in by less.
     pub(super) fn leading_off(&self, touch: Contact) -> Option<Contact> {
         let behind = (self.tool.radius() <= 0.0).then(|| touch.seen_from_behind());
-        [Some(touch), behind].into_iter().flatten().find(|contact| self.is_off_own_side(contact))
+        let out = [Some(touch), behind].into_iter().flatten().find(|contact| self.is_off_own_side(contact));
+        out.filter(|contact| -contact.clearance <= self.tool.reach())
     }
 
     /// Whether a contact is the nearest: no place of the surface is nearer to the tool than a level.

@@ -1,8 +1,11 @@
-//! Tools that go along the end of a surface, which they touch with two places one after the other.
+//! Tools that go along the end of a surface.
 
-use apt_geometry::canonical::{Remembering, RuledSurface};
+use std::sync::Arc;
+
+use apt_geometry::canonical::{Interval, Remembering, RuledSurface, TabulatedCylinder};
 
 use super::{beyond_ends::poly_conic, *};
+use crate::clearance::Tool;
 
 /// A bull nose comes to the end of its drive surface with its flank, told by which its path would lead over that; but there it touches the end with the edge
 /// of its top, too, and goes on along it by that.
@@ -73,6 +76,216 @@ fn a_tool_goes_along_an_end_by_the_place_that_touches_it_next() {
     });
     p.run(&MotionCommand::PartSurface(named(&part))).go(&[(Relation::To, &drive)]);
     let forward = v(-0.9070230638685834, 0.15871930142607757, 0.3900222365010301);
+    p.side(DriveSide::Left).indirv(forward.x, forward.y, forward.z);
+    p.drive(Turn::Forward, &drive, Relation::To, &stop).verified();
+}
+
+/// The height of a tool that is a line.
+const HIGH: f64 = 4.383397496617393;
+
+fn line_cutter() -> [f64; 7] {
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, HIGH]
+}
+
+/// A polyconic along whose end an upright line goes.
+fn sail() -> Geometry {
+    poly_conic(
+        &[
+            1.0,
+            0.07883979213294519,
+            0.5103317365453104,
+            0.8563561209281344,
+            2.162093347948562,
+            -0.29553967446416357,
+            0.8323771505650133,
+            -0.4688332113181458,
+            2.310685108543333,
+            -0.9520717346891725,
+            -0.2161244962791511,
+            0.21644771681409128,
+            1.9494387549733785,
+            0.0,
+            0.0,
+            5.999999999999999,
+        ],
+        [
+            [2.047961565600921, -0.00012618440790886605],
+            [2.047961565600921, -0.002647263380503207],
+            [2.047961565600921, 0.004972136879623743],
+            [-2.047961565600921, -0.001517456203186022],
+            [-2.047961565600921, -0.00597434746104535],
+            [2.047961565600921, 0.0015511497985655277],
+            [0.7071067811865476, 0.0023510161388404236],
+        ],
+    )
+}
+
+/// A line that was beside a far part of an end is not behind that from wherever it comes to: a way out past the end that is longer than the tool is no
+/// depth of it.
+#[test]
+fn a_line_is_no_deeper_past_an_end_than_it_is_long() {
+    let role = touched(&sail());
+    let cutter = Cutter::from_numbers(&line_cutter(), 0.0).expect("a cutter");
+    let (led, tool) = (gauge(&role), Tool::new(cutter, Vec3::z()));
+    let far = led.contact(&tool, &v(6.610148868077037, -4.191300737190406, 5.743083083021564));
+    assert!(far.clearance.abs() < 0.01, "{far:?}");
+    let way = v(0.7865474083391978, -0.3905254456098339, 0.47836497652538473);
+    for k in 0..20 {
+        let tip = v(1.6455, -0.9472, 2.7912) + way * (0.01 * f64::from(k));
+        let wanted = read_by_verifier(&role, cutter, ToolPosition { tip, axis: Vec3::z() });
+        let found = led.contact(&tool, &tip);
+        assert!((found.clearance - wanted).abs() < 1e-6, "{wanted} {found:?}");
+    }
+}
+
+/// A line begins in a corner of its path at the end of its drive surface and goes along that; in the middle of the bands beside it the path leads the other
+/// way, over the end, which is not the outlook from there.
+#[test]
+fn the_outlook_from_a_corner_is_along_the_leg_of_the_path() {
+    let rows = [
+        [-16.245852875740848, 1.2116524326875169, 0.0, 0.0, 10.0],
+        [
+            -6.572571870220964,
+            -1.3236255773634877,
+            0.05086620936696528,
+            -0.13803225149672194,
+            0.5258366726720937,
+        ],
+        [
+            -6.072571870220964,
+            -1.4864267024420894,
+            0.0498154036612298,
+            -0.05754118746990071,
+            0.5374967919403094,
+        ],
+        [
+            -5.572571870220964,
+            -1.6836646332417313,
+            0.05071153470269808,
+            0.02247292193958982,
+            0.532568958831957,
+        ],
+        [
+            -5.072571870220964,
+            -1.8670486453893411,
+            0.04697984523393974,
+            0.10510566691879748,
+            0.5152989024256749,
+        ],
+        [
+            -4.572571870220964,
+            -1.9916799369701685,
+            0.017034419737112644,
+            0.1810113288531268,
+            0.5012490865232418,
+        ],
+        [
+            -4.072571870220964,
+            -2.0270444211369756,
+            -0.02878342127163016,
+            0.20584393878046695,
+            0.5038986520009138,
+        ],
+        [
+            -3.5725718702209632,
+            -1.9644836387862248,
+            -0.04977255397091556,
+            0.15907982144009664,
+            0.5206477071126844,
+        ],
+        [
+            -3.0725718702209632,
+            -1.8193146513209415,
+            -0.050207835697703394,
+            0.08047759122873618,
+            0.5356810651218396,
+        ],
+        [
+            -2.5725718702209632,
+            -1.627079889818063,
+            -0.050207835697703394,
+            0.0002085694832880289,
+            0.5356810651218396,
+        ],
+        [
+            -2.0725718702209632,
+            -1.4348451283151844,
+            -0.04977255397091556,
+            -0.08133792313379809,
+            0.5206477071126844,
+        ],
+        [
+            -1.5725718702209632,
+            -1.2896761408499011,
+            -0.02878342127163016,
+            -0.16233215724422034,
+            0.5038986520009138,
+        ],
+        [
+            -1.0725718702209632,
+            -1.2271153584991503,
+            0.017034419737112644,
+            -0.20662679085117036,
+            0.5012490865232418,
+        ],
+        [
+            -0.5725718702209632,
+            -1.2624798426659574,
+            0.04697984523393974,
+            -0.17773165497432916,
+            0.5152989024256749,
+        ],
+        [
+            -0.07257187022096323,
+            -1.3871111342467848,
+            0.05071153470269808,
+            -0.10349508965174953,
+            0.532568958831957,
+        ],
+        [
+            0.42742812977903677,
+            -1.5704951463943946,
+            0.0498154036612298,
+            -0.02278567150146698,
+            0.5374967919403094,
+        ],
+        [
+            0.9274281297790368,
+            -1.7677330771940365,
+            0.05086620936696528,
+            0.05779029664182061,
+            0.5258366726720937,
+        ],
+        [1.4274281297790368, -1.9305342022726382, 0.0, 0.0, 10.0],
+    ];
+    let interval =
+        |[u, v, a, b, length]: [f64; 5]| Interval { u, v, a, b, length, maximum: 0.0, minimum: 0.0 };
+    let part = TabulatedCylinder {
+        axes: [
+            v(0.8155655755506214, -0.5499801504072974, 0.17992950323599075),
+            v(0.34909581032690146, 0.21964025879352567, -0.9109831348215606),
+            v(0.4615028788523295, 0.8057791204015402, 0.37112680034717577),
+        ],
+        kind: 0.0,
+        intervals: rows.into_iter().map(interval).collect(),
+        last: [11.10070913529892, -4.465812212323643],
+    };
+    let (part, drive) = (Geometry::TabulatedCylinder(Arc::new(part)), sail());
+    let stop = cylinder(
+        v(-0.727932898446051, 2.219569680509778, 5.650252618953877),
+        v(-0.7655692749820546, -0.03986004350095692, 0.6421174831255984),
+        4.932659965431765,
+    );
+    let mut p = Program::new();
+    p.cutter(&line_cutter()).tolerance(0.001, 0.001).run(&MotionCommand::MaximumStep(10.0));
+    p.run(&MotionCommand::From {
+        position: v(-0.01713331964503216, -0.08955948061466851, 1.9629155337036412),
+        axis: Some(v(0.0, 0.0, 1.0)),
+        name: String::new(),
+    });
+    p.part_side(PartSide::On);
+    p.run(&MotionCommand::PartSurface(named(&part))).go(&[(Relation::To, &drive)]);
+    let forward = v(-0.1508476369952637, -0.9811579662000894, -0.12072297119872967);
     p.side(DriveSide::Left).indirv(forward.x, forward.y, forward.z);
     p.drive(Turn::Forward, &drive, Relation::To, &stop).verified();
 }

@@ -78,11 +78,9 @@ impl Search<'_> {
         }
     }
 
-    /// The way out of the surface past its end, where that touches the tool, if the tool is clear then. One that is longer than the tool
-    /// is no depth of it: drawn back along its axis it is out of all that it is in by less.
+    /// The way out of the surface past its end, where that touches the tool, if the tool is clear then.
     fn freed(&self, touch: Contact, slack: f64) -> Option<Contact> {
-        let is_depth = |out: &Contact| out.clearance < 0.0 && -out.clearance <= self.tool.reach();
-        let out = self.beside().leading_off(touch).filter(is_depth)?;
+        let out = self.beside().leading_off(touch).filter(|out| out.clearance < 0.0)?;
         let is_freed =
             self.surface.edge_at(&out.surface).is_some() && self.beside().clears(&out, out.clearance - slack);
         is_freed.then_some(out)

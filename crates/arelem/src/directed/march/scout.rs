@@ -44,6 +44,9 @@ const SAME: f64 = 1e-6;
 /// Bound of the halvings that find where a surface ends.
 const MAX_HALVINGS: u32 = 40;
 
+/// Cosine between the path at a position and in the middle of the bands beside it below which that is on another leg of a corner (60°).
+const SAME_LEG: f64 = 0.5;
+
 /// What lies ahead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Outlook {
@@ -93,7 +96,11 @@ pub(super) fn ahead(
         log: vec![[0.0; 2]],
     };
     let untold = Outlook::Open { way: 0.0 };
-    let Some(start) = Vertex::settled(prepared, &from.tip, &from.tangent) else { return Ok(untold) };
+    // In a corner the middle of the bands may be on another leg, along which the way ahead is not that of the path.
+    let settled = Vertex::settled(prepared, &from.tip, &from.tangent);
+    let Some(start) = settled.filter(|start| start.tangent.dot(&from.tangent) >= SAME_LEG) else {
+        return Ok(untold);
+    };
     // From elsewhere in the bands to their middle the tool may already come to a position.
     let aside = from.sweep(prepared, &start);
     if aside.length > 0.0 && scout.watcher.scan(&aside).is_some() {
