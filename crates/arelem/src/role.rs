@@ -161,9 +161,10 @@ impl Working {
         if let (RoleName::Check(_), false) = (name, on) {
             undercut(state, name, stock)?;
         }
-        // In APT4 stock counts for ON, too.
         let named = match state.start_up {
-            StartUpRule::Apt4 if on && stock != 0.0 => moved(named, stock, state.tip.as_ref(), patience),
+            rule if on && stock != 0.0 && rule.on_takes_stock(named.geometry.kind()) => {
+                moved(named, stock, state.tip.as_ref(), patience)
+            }
             _ => named.clone(),
         };
         let surface = surface(name, &named, patience)?;

@@ -12,7 +12,7 @@ use apt_geometry::{
 };
 use apt_program::{Origin, Program, Record, RecordKind, record::PostArgument};
 use apt_syntax::SyntaxTree;
-use arelem::section2::State;
+use arelem::section2::{StartUpRule, State};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -22,6 +22,7 @@ use crate::{
     diagnostic::{Fix, statement_range},
     fix::{inserting, removal, rewriting, written},
     go_on,
+    pipeline::start_up_rule,
     settings::Units,
 };
 
@@ -34,7 +35,7 @@ pub(super) fn lints(
     units: Units,
     patience: Patience<'_>,
 ) -> Result<Vec<Lint>, Cancelled> {
-    let mut walk = Walk::default();
+    let mut walk = Walk { rule: start_up_rule(tree.dialect().name), ..Walk::default() };
     for record in program.records() {
         go_on(patience, 1)?;
         walk.record(record);
@@ -193,6 +194,7 @@ impl Mode {
 /// What holds at a place of the path.
 #[derive(Default)]
 struct Walk {
+    rule: StartUpRule,
     lints: Vec<Lint>,
     /// Statements that had an effect at least once.
     effective: FxHashSet<Place>,
@@ -296,7 +298,7 @@ impl Walk {
                 self.side(origin, *turn, &drive.name);
                 let stop = self.stop_of(checks);
                 self.moved();
-                self.along_surfaces(origin, checks);
+                self.along_surfaces(origin, drive.geometry.kind(), checks);
                 self.stop = stop;
             }
             // What these make of the values of before is their own affair.
@@ -331,13 +333,14 @@ impl Walk {
         if let Some(part) = surfaces.get(1) {
             self.part = Some(part.surface.geometry.kind());
         }
+        let rule = self.rule;
         if let Some(thickness) = &mut self.thickness {
             let values = [thickness.values.drive, thickness.values.part, thickness.values.check[0]];
             thickness.motions += 1;
-            thickness.felt |= surfaces
-                .iter()
-                .zip(values)
-                .any(|(surface, value)| value != 0.0 && surface.relation != Relation::On);
+            thickness.felt |= surfaces.iter().zip(values).any(|(start, value)| {
+                let on = start.relation == Relation::On;
+                value != 0.0 && (!on || rule.on_takes_stock(start.surface.geometry.kind()))
+            });
         }
     }
 
@@ -423,21 +426,24 @@ impl Walk {
         }
     }
 
-    fn along_surfaces(&mut self, origin: &Origin, checks: &[CheckSurface]) {
+    fn along_surfaces(&mut self, origin: &Origin, drive: GeometryKind, checks: &[CheckSurface]) {
         let curved = !matches!(self.part, None | Some(GeometryKind::Plane | GeometryKind::Line));
         self.cuts(origin, curved);
         let drive_side = self.drive_side.as_ref().map_or(DriveSide::On, |(_, side)| *side);
         let part_side = self.part_side.unwrap_or(PartSide::Offset);
+        let rule = self.rule;
+        let feels = |value: f64, on: bool, kind: Option<GeometryKind>| {
+            value != 0.0 && (!on || kind.is_some_and(|kind| rule.on_takes_stock(kind)))
+        };
+        let part = self.part;
         let Some(thickness) = &mut self.thickness else { return };
         thickness.motions += 1;
-        let [first, second] = thickness.values.check;
-        let check = checks
-            .iter()
-            .zip([first, second])
-            .any(|(check, value)| value != 0.0 && check.relation != Relation::On);
+        let check = checks.iter().zip(thickness.values.check).any(|(check, value)| {
+            feels(value, check.relation == Relation::On, Some(check.surface.geometry.kind()))
+        });
         thickness.felt |= check
-            || (thickness.values.drive != 0.0 && drive_side != DriveSide::On)
-            || (thickness.values.part != 0.0 && part_side != PartSide::On);
+            || feels(thickness.values.drive, drive_side == DriveSide::On, Some(drive))
+            || feels(thickness.values.part, part_side == PartSide::On, part);
     }
 
     fn loose_tolerance(&mut self) {

@@ -114,6 +114,23 @@ fn thickness_that_no_motion_feels() {
 }
 
 #[test]
+fn thickness_moves_what_the_tool_is_on_in_apt4() {
+    let told = |dialect: &str, text: &str| {
+        let settings = Arc::new(Settings { dialect: Some(dialect.to_owned()), ..Settings::default() });
+        let document = Document::new(text, None, &settings);
+        let found = document.diagnostics(Level::Section1, &|| false, &mut |_, _| {}).unwrap();
+        found.iter().filter(|one| one.wording.code == THICKNESS_WITHOUT_EFFECT).count()
+    };
+    let on = format!("{PART}CUTTER/.5\nTHICK/0,.1\nGO/ON,L1,TO,PL,ON,L3\nTLON,GORGT/L1,ON,L2\nFINI\n");
+    assert_eq!([told("apt4", &on), told("apt3", &on)], [0, 1]);
+    // What lies at a distance from a cone is none: ON it, stock is left out.
+    let cone = "K=CONE/CANON,0,0,0,0,0,1,.5\n";
+    let along =
+        format!("{PART}{cone}CUTTER/.5\nTHICK/0,.1,0\nGO/ON,K,TO,PL,ON,L3\nTLON,GORGT/K,ON,L2\nFINI\n");
+    assert_eq!(told("apt4", &along), 1);
+}
+
+#[test]
 fn directions_one_after_the_other() {
     let part = |between: &str| {
         format!("{PART}CUTTER/.5\nINDIRV/1,0,0\n{between}\nINDIRV/0,1,0\nGO/TO,L1,TO,PL,TO,L3\nFINI\n")

@@ -5,6 +5,8 @@ mod section2;
 
 use std::sync::Arc;
 
+pub(crate) use section2::start_up_rule;
+
 use apt_cldata::{
     edit::EditError,
     record::{ClPoint, ClRecord},

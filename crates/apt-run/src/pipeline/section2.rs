@@ -512,7 +512,7 @@ fn tells_axis(command: &MotionCommand) -> bool {
 }
 
 /// The rule for start-up motions that a dialect has.
-fn start_up_rule(dialect: DialectName) -> StartUpRule {
+pub(crate) fn start_up_rule(dialect: DialectName) -> StartUpRule {
     match dialect {
         DialectName::Apt4 => StartUpRule::Apt4,
         _ => StartUpRule::Apt3,

@@ -2,7 +2,7 @@
 
 use apt_geometry::{
     Vec3,
-    canonical::{Geometry, Plane},
+    canonical::{Geometry, GeometryKind, Plane},
     cutter::Cutter,
     motion::{Direction, DriveSide, NamedSurface, PartSide, PerRole, RoleDisk, ToolAxis},
 };
@@ -35,6 +35,16 @@ pub enum StartUpRule {
     /// moves along it by the greatest distance from the surfaces, and starts up from where the search in the direction's
     /// plane leaves it.
     Apt4,
+}
+
+impl StartUpRule {
+    /// Whether stock moves a surface of this type that the tool is ON. In APT4 it does where what lies at a distance from the
+    /// surface is a surface of the same type; other surfaces are measured without stock.
+    pub fn on_takes_stock(self, kind: GeometryKind) -> bool {
+        use GeometryKind as Kind;
+        let moves = matches!(kind, Kind::Plane | Kind::Line | Kind::Circle | Kind::Cylinder | Kind::Sphere);
+        self == Self::Apt4 && moves
+    }
 }
 
 /// Everything that a command can depend on besides its own contents. Plain data: compare or hash it as it is.
