@@ -3,7 +3,10 @@
 mod support;
 
 use apt_geometry::motion::{Delta, MotionCommand};
-use apt_program::{ControlFinding, FindingKind, FrameKind, Options, Program, RecordKind, Severity, evaluate};
+use apt_program::{
+    ControlFinding, FindingKind, FrameKind, Options, Program, RecordKind, Severity, evaluate,
+    finding::{Expected, Finding, Found},
+};
 use apt_syntax::{Dialect, DialectName, SyntaxTree};
 use support::{problems, run_as, scalar};
 
@@ -257,6 +260,22 @@ fn forms_of_apt4_are_taken() {
         }
     }
     assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn a_part_of_print_is_switched_on_or_off() {
+    let told = |text: &str| -> Vec<(Expected, Found)> {
+        let operand = |finding: &Finding| match &finding.kind {
+            FindingKind::Operand { expected, found, number: 326, .. } => Some((*expected, found.clone())),
+            _ => None,
+        };
+        run(text).findings().filter_map(operand).collect()
+    };
+    assert_eq!(told("PRINT/AVPRT"), [(Expected::OnOrOff, Found::Nothing)]);
+    assert_eq!(told("PRINT/AVPRT,1"), [(Expected::OnOrOff, Found::Scalar)]);
+    assert_eq!(told("PRINT/SSPRT,ALL"), [(Expected::OnOrOff, Found::Word("ALL".into()))]);
+    assert_eq!(told("PRINT/AVPRT,ON,OFF"), [(Expected::Nothing, Found::Word("OFF".into()))]);
+    assert_eq!(told("PRINT/AVPRT,ON"), []);
 }
 
 #[test]

@@ -4,8 +4,9 @@ use apt_geometry::patience::Waiting;
 use apt_syntax::{
     TextRange,
     statement::{Argument, Expression, Name, Reference},
+    vocabulary::WordClass,
 };
-use smol_str::SmolStr;
+use smol_str::{SmolStr, format_smolstr};
 
 use super::{Major, segment};
 use crate::{
@@ -122,6 +123,9 @@ impl Evaluator<'_> {
         if self.is_apt4() && (self.print_avoidance(major) || Self::is_part_switch(major.arguments)) {
             return;
         }
+        if self.is_apt4() && self.refuse_part_switch(major) {
+            return;
+        }
         let allowed: &[f64] = if self.is_apt4() { &APT4_PRINT_NUMBERS } else { &[0.0, 1.0, 2.0, 3.0, 4.0] };
         let number = self.listing_number(major, allowed);
         let items = self.listed(major.arguments.get(1..).unwrap_or_default());
@@ -142,6 +146,32 @@ impl Evaluator<'_> {
         if number == Some(4.0) {
             self.punch_items(major, &items, Sort::All);
         }
+    }
+
+    /// A part of PRINT without ON or OFF behind it, or with more; whether it was one, which is told.
+    fn refuse_part_switch(&mut self, major: Major<'_>) -> bool {
+        let [Argument::Word(part), rest @ ..] = major.arguments else { return false };
+        if part.word.class != WordClass::SystemFlag {
+            return false;
+        }
+        let statement = format_smolstr!("{}/{}", major.spelling(), part.word.spelling);
+        let found = |argument: &Argument| match argument {
+            Argument::Word(word) => Found::Word(SmolStr::new_static(word.word.spelling)),
+            _ => Found::Scalar,
+        };
+        let mut tell = |expected, found, range| {
+            let finding =
+                FindingKind::Operand { statement: statement.clone(), expected, found, number: LISTING_FORM };
+            self.report(finding, range);
+        };
+        match rest {
+            [] => tell(Expected::OnOrOff, Found::Nothing, major.range),
+            [Argument::Word(switch), more, ..] if matches!(switch.word.spelling, "ON" | "OFF") => {
+                tell(Expected::Nothing, found(more), more.range());
+            }
+            [other, ..] => tell(Expected::OnOrOff, found(other), other.range()),
+        }
+        true
     }
 
     /// PUNCH/1, PUNCH/2 and PUNCH/3 with a list or ALL.
