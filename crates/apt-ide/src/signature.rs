@@ -82,7 +82,8 @@ impl Analysis {
             let matched = form.matched(&typed);
             let going = matched.next.iter().map(|&index| form.likeness(index, begun, prefix)).max();
             let going = going.unwrap_or_default();
-            (matched.all && (begun.is_none() || going > 0 || matched.more), matched.fits, going)
+            let goes_on = matched.all && (begun.is_none() || going > 0 || matched.more);
+            (goes_on, matched.fits - matched.dotted, going)
         };
         // Of forms that fit equally well the first is the most usual one.
         let active = (0..forms.len()).max_by_key(|&index| (fit(forms[index]), std::cmp::Reverse(index)))?;

@@ -347,6 +347,18 @@ SCON/PS,TO,S1,PLUS,0
 ";
 
 #[test]
+fn straight_directions_of_a_surface_have_no_curvature() {
+    let told = |text: &str| {
+        let (analysis, offset) = marked(text);
+        analysis.hover(offset, &never).unwrap().unwrap().markdown
+    };
+    let curve =
+        "$$ apt-lsp: dialect=apt4\nC=SCURV/SPLINE,(POINT/0,0,0),TANSPL,(VECTOR/1,0,0),(POINT/20,0,2)\n";
+    let ruled = told(&format!("{curve}S=SSURF/RULED,C,AXIS,(VECTOR/0,1,0)\nCHKSRF/$0S,ON\nFINI\n"));
+    assert!(ruled.contains(", curvature 0 … 0.0099"), "{ruled}");
+}
+
+#[test]
 fn a_command_of_regional_milling_tells_its_conditions() {
     let conditions = |text: &str| {
         let (analysis, offset) = marked(text);

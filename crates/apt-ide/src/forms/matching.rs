@@ -35,6 +35,8 @@ pub(crate) struct Matched {
     pub(crate) more: bool,
     /// How many of the typed parameters and commas fit.
     pub(crate) fits: usize,
+    /// How many of the words among these are taken only because what came before may go on.
+    pub(crate) dotted: usize,
     /// All of them do.
     pub(crate) all: bool,
 }
@@ -62,14 +64,21 @@ impl Form {
     /// Lays typed parameters beside the form.
     pub(crate) fn matched(&self, typed: &[Typed<'_>]) -> Matched {
         let mut at = self.reachable([0]);
+        let mut dotted = 0;
         for (fits, one) in typed.iter().enumerate() {
-            let next: Vec<usize> = at.iter().filter_map(|&place| self.after(place, *one)).collect();
-            if next.is_empty() {
-                return Matched { fits, all: false, ..self.expected(&at) };
+            let mut next: Vec<usize> = at.iter().filter_map(|&place| self.after(place, *one)).collect();
+            // A word that the form has here is that word, and not one more of what came before.
+            let named = |&place: &usize| self.names(place, *one).then_some(place + 1);
+            if at.iter().any(|place| named(place).is_some()) {
+                next = at.iter().filter_map(named).collect();
+            } else if next.is_empty() {
+                return Matched { fits, dotted, all: false, ..self.expected(&at) };
+            } else if matches!(one, Typed::Word(_)) && at.iter().all(|&place| self.passes(place, *one)) {
+                dotted += 1;
             }
             at = self.reachable(next);
         }
-        Matched { fits: typed.len(), all: true, ..self.expected(&at) }
+        Matched { fits: typed.len(), dotted, all: true, ..self.expected(&at) }
     }
 
     /// Where the form goes on behind a place if this is typed there.
@@ -81,6 +90,18 @@ impl Form {
             Step::Split(..) | Step::Jump(_) => false,
         };
         goes_on.then_some(place + 1)
+    }
+
+    /// Whether the form has this very word at a place.
+    fn names(&self, place: usize, typed: Typed<'_>) -> bool {
+        let Some(Step::Parameter(index)) = self.steps.get(place) else { return false };
+        let atom = self.parameters.get(*index).map(|parameter| parameter.atom);
+        matches!((atom, typed), (Some(Atom::Word(word)), Typed::Word(typed)) if word == typed)
+    }
+
+    /// Whether a place takes this by its dots or not at all.
+    fn passes(&self, place: usize, typed: Typed<'_>) -> bool {
+        matches!(self.steps.get(place), Some(Step::More(_))) || self.after(place, typed).is_none()
     }
 
     /// The places that can be reached from some without typing anything, in order, splits and jumps left out.
@@ -115,7 +136,7 @@ impl Form {
                 _ => {}
             }
         }
-        Matched { next, more, fits: 0, all: true }
+        Matched { next, more, fits: 0, dotted: 0, all: true }
     }
 }
 
@@ -184,5 +205,28 @@ mod tests {
         assert!(next("CIRCLE", "CENTER,L,").is_empty(), "a line is no centre");
         assert!(next("CIRCLE", "CENTER,?,").contains(&"RADIUS".to_owned()), "what is not known yet may fit");
         assert_eq!(next("LOADTL", "1,2,3,"), ["n"], "dots go on");
+        assert!(next("SCURV", "CURSEG,P,P,FLOW,").contains(&"CHORD".to_owned()));
+        assert_eq!(next("PRINT", "AVPRT,"), ["OFF", "ON"]);
+    }
+
+    #[test]
+    fn a_word_after_dots_is_that_word() {
+        let knots = "NURBS,DEGREE,1,1,KNOTS,0,0,1,1,";
+        assert_eq!(next("SSURF", "NURBS,DEGREE,1,1,KNOTS,0,0,1,1,KNOTS,"), ["t"]);
+        assert_eq!(next("SSURF", "NURBS,DEGREE,1,1,KNOTS,0,0,1,1,KNOTS,0,0,1,1,PTS,"), ["point"]);
+        assert_eq!(next("SSURF", "NURBS,DEGREE,1,1,KNOTS,0,0,1,1,KNOTS,0,0,1,1,PTS,P,P,P,P,WEIGHT,"), ["w"]);
+        assert_eq!(next("SSURF", knots), ["KNOTS", "t"]);
+        // Another form takes the words of a flow only by its dots.
+        let flow = typed("SPLINE,P,P,FLOW,PARAM,0,1,SEG,");
+        let dotted =
+            |form: &Form| Some(form.matched(&flow)).filter(|matched| matched.all).map(|one| one.dotted);
+        let all: Vec<usize> = forms_of(lookup("SCURV").unwrap()).iter().filter_map(dotted).collect();
+        assert_eq!(all, [3, 0]);
+    }
+
+    #[test]
+    fn sculptured_surfaces_stand_for_surfaces_of_motion() {
+        let sculptured = Typed::Value(ValueKind::Geometry(GeometryKind::Sculptured));
+        assert!(Atom::Placeholder("cs").takes(sculptured) && Atom::Placeholder("ds").takes(sculptured));
     }
 }

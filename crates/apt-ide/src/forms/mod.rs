@@ -162,6 +162,7 @@ pub(crate) fn kinds_of(placeholder: &str) -> Option<&'static [GeometryKind]> {
         Kind::PolyConic,
         Kind::TabulatedCylinder,
         Kind::RuledSurface,
+        Kind::Sculptured,
     ];
     let stem = placeholder.trim_end_matches(|c: char| c.is_ascii_digit());
     Some(match stem {
@@ -280,6 +281,12 @@ impl Reader {
                 '.' if self.text.get(self.at..self.end).is_some_and(|rest| rest.starts_with("...")) => {
                     while self.peek() == Some('.') {
                         self.at += 1;
+                    }
+                    let between = self.steps.last() == Some(&Step::Comma) && self.peek() == Some(',');
+                    if between {
+                        // Dots for nothing: the comma before them is the one behind them.
+                        let behind = self.steps.len() + 5;
+                        self.steps.push(Step::Split(behind - 4, behind));
                     }
                     let here = self.steps.len();
                     self.steps.push(Step::Split(here + 1, here + 3));

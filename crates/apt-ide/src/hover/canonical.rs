@@ -206,12 +206,14 @@ fn measures(surface: &SculpturedSurface) -> String {
     if surface.patches.len() > GREATEST_COUNT {
         return String::new();
     }
-    let curvatures = surface.curvature_range().map(|[least, greatest]| {
-        format!(
-            ", curvature {} … {} (positive where it is hollow on the side of its sign word)",
-            number(least.curvature),
-            number(greatest.curvature)
-        )
+    /// Part of the greatest curvature, or of one over the size of the surface, below which a curvature is rounding.
+    const ROUNDING: f64 = 1e-12;
+    let curvatures = surface.curvature_range().map(|range| {
+        let [least, greatest] = range.map(|place| place.curvature);
+        let rounding = ROUNDING * least.abs().max(greatest.abs()).max(surface.size().recip());
+        let [least, greatest] =
+            [least, greatest].map(|value| number(if value.abs() <= rounding { 0.0 } else { value }));
+        format!(", curvature {least} … {greatest} (positive where it is hollow on the side of its sign word)")
     });
     format!(", area {}{}", number(surface.area()), curvatures.unwrap_or_default())
 }
