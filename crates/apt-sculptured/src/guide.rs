@@ -67,6 +67,12 @@ pub struct GuidePoint {
     pub projection: Vec3,
 }
 
+/// The part of a range that is on an element whose parameter begins at 0.
+fn within(range: ParameterRange, extent: f64) -> ParameterRange {
+    let on_it = |limit: f64| limit.max(0.0).min(extent);
+    ParameterRange { low: on_it(range.low), high: on_it(range.high) }
+}
+
 /// The guide element of a SMIL.
 #[derive(Debug, Clone)]
 pub struct GuideElement<'a> {
@@ -81,18 +87,21 @@ enum Element<'a> {
 }
 
 impl<'a> GuideElement<'a> {
-    /// The element of SCON/DS.
+    /// The element of SCON/DS. Of a range that reaches beyond the element, of which Section 1 warns, the part on it counts.
     ///
     /// # Errors
     /// [`GuideError::NotParametric`].
     pub fn new(condition: &'a GuideCondition) -> Result<Self, GuideError> {
         let element = match &condition.guide {
             Guide::Surface { surface, u, v } => match &surface.geometry {
-                Geometry::Sculptured(surface) => Element::Surface { surface, u: *u, v: *v },
+                Geometry::Sculptured(surface) => {
+                    let [width, height] = surface.extent();
+                    Element::Surface { surface, u: within(*u, width), v: within(*v, height) }
+                }
                 _ => return Err(GuideError::NotParametric),
             },
             Guide::Curve { curve, u } => match &curve.geometry {
-                Geometry::SpaceCurve(curve) => Element::Curve { curve, u: *u },
+                Geometry::SpaceCurve(curve) => Element::Curve { curve, u: within(*u, curve.count() as f64) },
                 _ => return Err(GuideError::NotParametric),
             },
         };

@@ -165,6 +165,22 @@ fn an_axis_at_an_angle_leans_as_that_of_the_public_system() {
 }
 
 #[test]
+fn a_pass_ends_at_the_edge_where_the_range_reaches_beyond_it() {
+    let setting = setting(&[0.5, 0.25], 0.002);
+    let over = |low: f64, high: f64| {
+        let mut command = command(&HILL);
+        if let Guide::Surface { u, .. } = &mut command.guide.guide {
+            (u.low, u.high) = (low, high);
+        }
+        command.command = RegionalCommand::Path(pass([0.5, 0.5], FeedDirection::Spline, Sense::Plus));
+        run(&command, &setting)
+    };
+    let (beyond, exact) = (over(-0.3, 1.5), over(0.0, 1.0));
+    assert_eq!((&beyond.failure, &exact.failure), (&None, &None));
+    assert!(beyond.locations().eq(exact.locations()));
+}
+
+#[test]
 fn the_tool_end_runs_on_the_surface() {
     let mut command = command(&HILL);
     command.part.relation = PartRelation::On;

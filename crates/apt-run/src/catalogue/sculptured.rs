@@ -38,7 +38,10 @@ pub(super) fn word(kind: &Kind) -> Option<Text> {
                     number(*high)
                 ),
             )
-            .hint(format!("{parameter} runs from 0 to {} there", number(*extent)))
+            .hint(format!(
+                "{parameter} runs from 0 to {} there, and passes end at its edges",
+                number(*extent)
+            ))
         }
         Kind::Sculptured(SculpturedFinding::AvoidanceWithoutCheck) => {
             say("APT0524", "AVCTRL is on, but no surface is checked, so that there is nothing to avoid")
