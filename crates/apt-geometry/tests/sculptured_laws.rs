@@ -463,6 +463,35 @@ fn classic_surfaces_are_taken_over_exactly() {
 }
 
 #[test]
+fn surfaces_join_and_tell_which_lie_apart() {
+    let sheet = |x: f64, y: f64, length: f64| {
+        let points = std::array::from_fn(|i| {
+            let x = x + length * i as f64 / 3.0;
+            std::array::from_fn(|j| Vec3::new(x, y + j as f64, 0.01 * x * (y + j as f64)))
+        });
+        let patches = vec![Patch::from_points(&points)];
+        Remembering::new(SculpturedSurface::assembled(
+            patches,
+            Some((1, 1)),
+            Vec::new(),
+            1.0,
+            Mesh::default(),
+        ))
+    };
+    let apart = |surfaces: Vec<Remembering<SculpturedSurface>>| {
+        let made =
+            SculpturedDefinition::plain(SurfaceShape::Combined { surfaces }).define().expect("a surface");
+        made.warnings
+    };
+    assert_eq!(apart(vec![sheet(0.0, 0.0, 3.0), sheet(0.0, -3.0, 3.0)]), []);
+    // A part of an edge is enough, and so is a neighbour that comes later.
+    assert_eq!(apart(vec![sheet(0.0, 0.0, 3.0), sheet(1.0, -3.0, 1.0)]), []);
+    assert_eq!(apart(vec![sheet(0.0, 0.0, 3.0), sheet(0.0, -6.0, 3.0), sheet(0.0, -3.0, 3.0)]), []);
+    let far = [sheet(0.0, 0.0, 3.0), sheet(9.0, 0.0, 3.0), sheet(9.0, -3.0, 3.0)];
+    assert_eq!(apart(far.to_vec()), [ParametricError::Apart { surface: 2 }]);
+}
+
+#[test]
 fn curves_join_and_tell_their_gaps() {
     let line = |from: [f64; 3], to: [f64; 3]| {
         Arc::new(SpaceCurve::of_arcs(vec![CurveArc::segment(&Vec3::from(from), &Vec3::from(to))]))

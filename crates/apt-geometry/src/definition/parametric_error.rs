@@ -115,6 +115,12 @@ pub enum ParametricError {
         /// The gap in units of the program.
         gap: f64,
     },
+    /// A surface of COMBIN that touches none of those that belong together with the first one (a warning: the surface is made).
+    #[error("surface {surface} does not touch the others")]
+    Apart {
+        /// Number of the surface, from 1.
+        surface: usize,
+    },
     /// The ends of the curves after CROSS do not meet the first and last curve.
     #[error("cross curve {curve} ends {gap} from the boundary curves")]
     CrossGap {

@@ -53,7 +53,7 @@ fn shape(
         SurfaceShape::Mesh { restriction, rows } => sculptured_mesh::surface(*restriction, rows),
         SurfaceShape::Product { product, profile, control } => Ok(multiplied(*product, profile, control)),
         SurfaceShape::Patches { form, patches } => sculptured_patch::surface(*form, patches, warnings),
-        SurfaceShape::Combined { surfaces } => combined(surfaces),
+        SurfaceShape::Combined { surfaces } => combined(surfaces, warnings),
         SurfaceShape::BSpline { degrees, knots, points, weights } => {
             let (patches, grid) = sculptured_knots::surface(*degrees, knots, points, weights)?;
             Ok(meshed(patches, grid))
@@ -126,7 +126,10 @@ fn multiplied(product: CurveProduct, profile: &SpaceCurve, control: &SpaceCurve)
     numbered(meshed(patches, (profile.arcs.len(), control.arcs.len())), profile, Some(control))
 }
 
-fn combined(surfaces: &[Remembering<SculpturedSurface>]) -> Result<SculpturedSurface, ParametricError> {
+fn combined(
+    surfaces: &[Remembering<SculpturedSurface>],
+    warnings: &mut Vec<ParametricError>,
+) -> Result<SculpturedSurface, ParametricError> {
     match surfaces {
         [] => Err(ParametricError::TooFew { least: 1, found: 0 }),
         // A copy keeps its grid.
@@ -143,7 +146,23 @@ fn combined(surfaces: &[Remembering<SculpturedSurface>]) -> Result<SculpturedSur
                 let ends = surface.flat_breaks();
                 breaks.extend(ends.iter().skip(1).map(|end| before + end));
             }
+            warnings.extend(apart(surfaces).map(|index| ParametricError::Apart { surface: index + 1 }));
             Ok(SculpturedSurface::assembled(patches, None, breaks, first.side, Mesh::default()))
         }
     }
+}
+
+/// Of each group of surfaces that hang together without the first one, the first.
+fn apart(surfaces: &[Remembering<SculpturedSurface>]) -> impl Iterator<Item = usize> {
+    // Each surface has the least number of its group.
+    let mut groups: Vec<usize> = (0..surfaces.len()).collect();
+    for (index, surface) in surfaces.iter().enumerate() {
+        for (before, other) in surfaces.iter().enumerate().take(index) {
+            let (one, another) = (groups[before].min(groups[index]), groups[before].max(groups[index]));
+            if one != another && surface.touches(other) {
+                groups.iter_mut().filter(|group| **group == another).for_each(|group| *group = one);
+            }
+        }
+    }
+    groups.into_iter().enumerate().skip(1).filter(|(index, group)| index == group).map(|(index, _)| index)
 }

@@ -5,7 +5,11 @@
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-use super::{patch::Patch, surface::SculpturedSurface};
+use super::{
+    patch::Patch,
+    surface::SculpturedSurface,
+    topology::{Edge, PROBES, SAME_EDGE},
+};
 use crate::Vec3;
 
 /// What a place may be farther than the nearest one, as a share of the size of surface and distance.
@@ -168,6 +172,24 @@ impl SculpturedSurface {
             open.extend(cell.halves());
         }
         true
+    }
+
+    /// Whether an edge of one of two surfaces comes to the other one, as near as edges are the same.
+    pub fn touches(&self, other: &SculpturedSurface) -> bool {
+        let close = SAME_EDGE * self.size().max(other.size());
+        let ([low, high], [least, greatest]) = (self.bounds(), other.bounds());
+        if (0..3).any(|k| low[k] > greatest[k] + close || high[k] < least[k] - close) {
+            return false;
+        }
+        let comes_to = |one: &SculpturedSurface, another: &SculpturedSurface| {
+            one.patches.iter().any(|patch| {
+                Edge::ALL.iter().any(|edge| {
+                    let arc = patch.edge(*edge);
+                    PROBES.iter().any(|t| !another.keeps_off(&arc.evaluate(*t).position, close))
+                })
+            })
+        };
+        comes_to(self, other) || comes_to(other, self)
     }
 
     /// The nearest place that steps from a start in a patch lead to, not leaving it.

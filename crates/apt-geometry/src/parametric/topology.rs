@@ -6,9 +6,9 @@ use super::patch::Patch;
 use crate::Vec3;
 
 /// Distance of edges, as a share of the size of the surface, up to which they are the same.
-const SAME_EDGE: f64 = 1e-6;
+pub(super) const SAME_EDGE: f64 = 1e-6;
 /// Parameters where edges are compared.
-const PROBES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+pub(super) const PROBES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Cosine of the angle (0.1 degrees) between tangent planes up to which a joint is smooth.
 const SMOOTH: f64 = 0.999_998_476_913_287_7;
 

@@ -130,6 +130,9 @@ fn reason(error: &Error) -> String {
         Error::Gap { curve, gap } => {
             format!("curve {curve} begins {} from the end of the one before", number(*gap))
         }
+        Error::Apart { surface } => {
+            format!("surface {surface} touches neither the first one nor any that hangs together with it")
+        }
         Error::CrossGap { curve, gap } => {
             format!("cross curve {curve} ends {} from the boundary curves", number(*gap))
         }
@@ -162,6 +165,7 @@ fn help(error: &Error) -> Option<String> {
         Error::AxisForm => "give a vector alone, or two points",
         Error::RowNotStraight { .. } => "XYZ takes rows of any shape",
         Error::Gap { .. } => "the curve is made with the gap",
+        Error::Apart { .. } => "the surface is made of pieces that know nothing of each other",
         Error::LoosePatches { .. } => "join surfaces of one patch by COMBIN",
         Error::Knots { degree, points } => {
             return Some(format!("they are {} numbers that do not fall", degree + points + 1));
