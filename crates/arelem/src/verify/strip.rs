@@ -16,6 +16,8 @@ use super::{
 
 /// Cells that one search may look at; what is left then goes into the gap.
 const CELL_BUDGET: usize = 20_000;
+/// Share of its distance by which another place may be nearer, or deeper, than one that is about the nearest.
+const ABOUT: f64 = 0.01;
 /// What a cell counts in units of work.
 const WORK_OF_CELL: u32 = 2;
 /// Distance from the tool's boundary, relative to the tool, below which the difference of two points is no direction: rounded, it
@@ -143,6 +145,8 @@ struct Search<'a> {
     tips: &'a [Vec3],
     tool: &'a Tool<'a>,
     resolution: f64,
+    /// By what share of its distance another place may be nearer than the best, where that is more than the resolution.
+    about: f64,
     sure: f64,
     best: Option<Touch>,
     /// Whether that has been led to the nearest place about it.
@@ -150,6 +154,16 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// By how much nearer than one at a distance of `value` another place may be.
+    fn open(&self, value: f64) -> f64 {
+        self.resolution.max(self.about * value.abs())
+    }
+
+    /// No place as far away as that is looked for where one at a distance of `value` is known.
+    fn enough(&self, value: f64) -> f64 {
+        value - self.open(value)
+    }
+
     /// Distance of a place from the tool with its end at `tip`, and the direction in which that is left behind fastest.
     fn measure(&self, tip: &Vec3, x: &Vec3, surface_normal: &Vec3) -> (f64, Vec3) {
         let w = x - tip;
@@ -223,7 +237,7 @@ impl Search<'_> {
                     }
                 }
             }
-            let enough = self.best.map_or(value, |b| b.value.min(value)) - self.resolution;
+            let enough = self.enough(self.best.map_or(value, |b| b.value.min(value)));
             lower = self.closer(tip, (net, [x, run, rise]), [&outward, normal], lower, enough);
         }
         Seen { value, outward, lower, spread }
@@ -279,12 +293,12 @@ impl Search<'_> {
         self.cell(patch.net, index, [0.0, 1.0], [0.0, 1.0])
     }
 
-    /// Halves cells, always the one that may hold the nearest place, until none could hold a place nearer than the best by more than
-    /// the resolution, or one deeper than `deep` is found; what the budget leaves unseen stays open. None when it is given up.
+    /// Halves cells, always the one that may hold the nearest place, until none could hold a place that is nearer than the best and looked
+    /// for, or one deeper than `deep` is found; what the budget leaves unseen stays open. None when it is given up.
     fn close_in(&mut self, open: &mut BinaryHeap<Cell>, deep: f64, budget: &mut usize) -> Option<()> {
         while let Some(cell) = open.peek() {
             let best = self.best.map_or(f64::INFINITY, |b| b.value);
-            if best < -deep || cell.lower >= best - self.resolution {
+            if best < -deep || cell.lower >= self.enough(best) {
                 open.clear();
                 break;
             }
@@ -414,51 +428,65 @@ pub(super) fn nearest(
     resolution: f64,
     deep: f64,
 ) -> Option<Touch> {
-    nearest_to_all(patches, &[*tip], tool, resolution, deep)
+    let sure = SURE_DIRECTION * tool.profile.reach() + resolution;
+    let search = Search { tips: &[*tip], tool, resolution, about: 0.0, sure, best: None, is_settled: false };
+    search.nearest(patches, deep, &mut { CELL_BUDGET })
 }
 
-/// The same where the tool end is in several places, and what counts is the greatest distance of a place from the tool in all of them.
+/// The same where the tool end is in several places, and what counts is the greatest distance of a place from the tool in all of them. The
+/// place told is about the nearest: to within a share of its distance, or the resolution. The budget of cells is what is left of one for
+/// several searches; what it leaves unseen goes into the gap.
 pub(super) fn nearest_to_all(
     patches: &[Patch],
     tips: &[Vec3],
     tool: &Tool<'_>,
     resolution: f64,
     deep: f64,
+    budget: &mut usize,
 ) -> Option<Touch> {
     let sure = SURE_DIRECTION * tool.profile.reach() + resolution;
-    let mut search = Search { tips, tool, resolution, sure, best: None, is_settled: false };
-    let middle = tips.first()? + tool.axis * (0.5 * tool.profile.reach());
-    let first = patches
-        .iter()
-        .enumerate()
-        .map(|(k, patch)| (patch.remoteness(&middle), k))
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|f| f.1)?;
-    // The nearest patch first: what it gives leaves out most of the others at once.
-    let mut budget = CELL_BUDGET;
-    let mut open = BinaryHeap::with_capacity(32);
-    open.push(search.whole(patches.get(first)?, first));
-    search.settle(patches)?;
-    search.close_in(&mut open, deep, &mut budget)?;
-    search.settle(patches)?;
-    let outward = search.best?.outward;
-    // The greatest distances are from where that is least.
-    let level = |tip: &Vec3| outward.dot(tip) + tool.support(&outward).0;
-    let tip = tips.iter().min_by(|a, b| level(a).total_cmp(&level(b)))?;
-    let base = level(tip);
-    for (k, patch) in patches.iter().enumerate().filter(|(k, _)| *k != first) {
-        let best = search.best?.value;
-        let enough = best - resolution;
-        let [a, b] = patch.spine.map(|end| outward.dot(&end) - base - patch.girth);
-        if a.min(b) < enough && search.bound(tip, &patch.net, &outward).0 < enough {
-            let cell = search.whole(patch, k);
-            open.push(cell);
+    let about = ABOUT;
+    Search { tips, tool, resolution, about, sure, best: None, is_settled: false }
+        .nearest(patches, deep, budget)
+}
+
+impl Search<'_> {
+    /// The place of the patches that is looked for, which a place deeper in the tool than `deep` ends. What the budget of cells leaves
+    /// unseen goes into the gap.
+    fn nearest(mut self, patches: &[Patch], deep: f64, budget: &mut usize) -> Option<Touch> {
+        let Self { tips, tool, .. } = self;
+        let search = &mut self;
+        let middle = tips.first()? + tool.axis * (0.5 * tool.profile.reach());
+        let first = patches
+            .iter()
+            .enumerate()
+            .map(|(k, patch)| (patch.remoteness(&middle), k))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|f| f.1)?;
+        // The nearest patch first: what it gives leaves out most of the others at once.
+        let mut open = BinaryHeap::with_capacity(32);
+        open.push(search.whole(patches.get(first)?, first));
+        search.settle(patches)?;
+        search.close_in(&mut open, deep, budget)?;
+        search.settle(patches)?;
+        let outward = search.best?.outward;
+        // The greatest distances are from where that is least.
+        let level = |tip: &Vec3| outward.dot(tip) + tool.support(&outward).0;
+        let tip = tips.iter().min_by(|a, b| level(a).total_cmp(&level(b)))?;
+        let base = level(tip);
+        for (k, patch) in patches.iter().enumerate().filter(|(k, _)| *k != first) {
+            let enough = search.enough(search.best?.value);
+            let [a, b] = patch.spine.map(|end| outward.dot(&end) - base - patch.girth);
+            if a.min(b) < enough && search.bound(tip, &patch.net, &outward).0 < enough {
+                let cell = search.whole(patch, k);
+                open.push(cell);
+            }
         }
+        search.close_in(&mut open, deep, budget)?;
+        search.settle(patches)?;
+        let mut touch = search.best?;
+        let lowest = open.peek().map_or(f64::INFINITY, |cell| cell.lower);
+        touch.gap = search.open(touch.value).max(touch.value - lowest);
+        (touch.value.is_finite() && touch.gap.is_finite()).then_some(touch)
     }
-    search.close_in(&mut open, deep, &mut budget)?;
-    search.settle(patches)?;
-    let mut touch = search.best?;
-    let lowest = open.peek().map_or(f64::INFINITY, |cell| cell.lower);
-    touch.gap = resolution.max(touch.value - lowest);
-    (touch.value.is_finite() && touch.gap.is_finite()).then_some(touch)
 }

@@ -19,6 +19,9 @@ const SURE: f64 = 4.0;
 const CUTS: usize = 16;
 /// Share of a part that none that is cut off it is shorter than.
 const LEAST_SHARE: f64 = 0.125;
+/// Cells that may be halved for whether a surface is left behind. Where it is, some hundreds tell so for each direction; where more are
+/// left, it is by little more than rounding.
+const CELLS_LEFT_BEHIND: usize = 4_000;
 
 /// What holds a tool without a body that is led back into a surface in a direction.
 struct Held {
@@ -185,17 +188,30 @@ impl Bodies<'_> {
     }
 
     /// Whether every place of the surface is left behind in one of several directions, each across the surface where those before did not
-    /// lead away from it, by as much as is deepest: what is deep at two places is not as deep as both together.
+    /// lead away from it, by as much as is deepest: what is deep at two places is not as deep as both together. Of a place that is left only
+    /// the next direction is taken, so it need not be the deepest to the last digit; that the surface is left behind is not told where it
+    /// takes too many looks.
     pub(super) fn is_left_behind(&self, tip: &Vec3, deepest: &Deepest) -> Option<bool> {
         let Some(sheet) = self.surface.sheet() else { return Some(false) };
         let depth = deepest.depth + 4.0 * self.close();
         let mut tips = vec![tip + deepest.out * depth];
+        let mut cells = CELLS_LEFT_BEHIND;
         for _ in 0..DIRECTIONS {
-            let touch = nearest_to_all(&sheet.patches, &tips, self.tool, self.resolution, self.deep)?;
+            let touch =
+                nearest_to_all(&sheet.patches, &tips, self.tool, self.resolution, self.deep, &mut cells)?;
+            if cells == 0 {
+                break;
+            }
             if touch.value > touch.gap {
+                // About the nearest place tells the side as the nearest does, but where the surface folds back within that little.
                 return self.is_on_side(&touch);
             }
-            tips.push(tip + self.away(&touch)? * depth);
+            let next = tip + self.away(&touch)? * depth;
+            // What is not left behind in a direction is not left behind in it a second time.
+            if tips.iter().any(|tip| (tip - next).norm() <= self.resolution) {
+                break;
+            }
+            tips.push(next);
         }
         Some(false)
     }

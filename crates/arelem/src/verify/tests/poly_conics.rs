@@ -11,7 +11,8 @@ use super::{
     super::{
         Rule, VerifyError,
         clearance::{Clearance, Surface},
-        tool::{Profile, Tool},
+        ruling_clearance::searched,
+        tool::{Profile, Tool, WORK},
         verify,
     },
     clearances::{clearance, direction},
@@ -367,4 +368,34 @@ fn a_polyconic_wall_as_drive_and_check_surface_is_judged() {
         sequence.points[0].tip.x += 0.01;
         assert!(rules(&sequence).contains(&Rule::CheckBand), "{relation:?}");
     }
+}
+
+/// Parts of a surface that may be looked at for how deep a tool is that is far in it: one deepest place to rounding at each of the ways out that are
+/// tried takes forty times as many.
+const FEW: u64 = 8_000;
+
+/// A surface that a lens is far in is deep in it at many places where the lens is led out of it at one: which way it is led next is told by about the
+/// deepest of them.
+#[test]
+fn a_lens_far_in_a_surface_is_measured_in_few_looks() {
+    let functions = [
+        [2.92415, -0.00096],
+        [2.92415, -0.01021],
+        [2.92415, -0.09809],
+        [-2.92415, -0.09402],
+        [-2.92415, -0.07965],
+        [2.92415, 0.1239],
+        [0.70712, 0.0293],
+    ];
+    let surface = poly_conic(ALONG_X, 0.0, 0.0, 6.0, &functions.map(|[at, by]| [at, by, 0.0]));
+    let surface = Surface::of(&surface).unwrap();
+    let Surface::Ruled(surface) = &surface else { panic!("{surface:?}") };
+    let lens = cutter(&[1.0, 0.1875, 0.33, 0.22, 6.459909894817512, 5.0, 2.957981794971618]);
+    let profile = Profile::of(&lens).unwrap();
+    let mut tool = Tool::new(&profile, Vec3::new(0.3034, -0.9139, -0.2697).normalize());
+    tool.depth = 1e3;
+    WORK.set(0);
+    let found = searched(surface, 1.0, &Vec3::new(2.5031, 2.0610, 3.5153), &tool).unwrap();
+    assert!(WORK.get() < FEW, "{}", WORK.get());
+    assert!(found.value + found.error > 0.0 && (found.value + 0.2).abs() < 1e-2, "{found:?}");
 }
