@@ -103,7 +103,8 @@ impl Ruling {
         let rays: Vec<Piece> = self.rays(&shadow)?.into_iter().flatten().collect();
         let found = directrix::nearest([&self.flat, &rays], &shadow, resolution, deep)?;
         let [outward, place] = [found.level.normal, found.place].map(|x| self.lifted(&x));
-        let height = self.axis.dot(&(tip + tool.support(&outward).1));
+        let height =
+            self.axis.dot(&(tip + self.across(tip, tool, &outward, &(place - outward * found.value))));
         Some(Touch {
             value: found.value,
             gap: found.gap,
@@ -113,6 +114,20 @@ impl Ruling {
             along: found.along,
             across: 0.0,
         })
+    }
+
+    /// The place of a tool, seen from its end, that goes farthest in a direction and is seen along the rulings at a place, as near as may be: on a straight
+    /// piece that lies square to the direction any other goes as far.
+    fn across(&self, tip: &Vec3, tool: &Tool<'_>, outward: &Vec3, seen: &Vec3) -> Vec3 {
+        let [low, high] = tool.supports(outward);
+        let piece = high - low;
+        let along = piece - self.axis * self.axis.dot(&piece);
+        let square = along.norm_squared();
+        // A piece along the rulings touches all along.
+        if square <= 0.0 {
+            return low;
+        }
+        low + piece * (along.dot(&(seen - tip - low)) / square).clamp(0.0, 1.0)
     }
 
     /// Whether a tool that is too deep leaves every place of the surface behind where it is led out by `depth` across the surface

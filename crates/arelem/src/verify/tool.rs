@@ -18,6 +18,8 @@ const ON_AXIS: f64 = 1e-14;
 const NEAR_AXIS: f64 = 1e-3;
 /// Share of the cutter's size that is rounding of where its lines are.
 const ROUNDING: f64 = 1e-14;
+/// Sine of the angle to a plane below which a straight piece lies along it: what is known of a direction to a surface.
+const SQUARE: f64 = 1e-9;
 
 /// A point of the meridian half-plane: distance from the axis, height above the tool end.
 pub(super) type Meridian = [f64; 2];
@@ -408,6 +410,27 @@ impl<'a> Tool<'a> {
         let (direction, out) = self.split(n);
         let (value, p) = self.profile.support(direction);
         (value, out * p[0] + self.axis * p[1])
+    }
+
+    /// The places that go farthest in a direction `n` by as much, the lowest and the highest of them: those at both ends of a straight piece square to it.
+    pub(super) fn supports(&self, n: &Vec3) -> [Vec3; 2] {
+        let (direction, out) = self.split(n);
+        let (value, p) = self.profile.support(direction);
+        let level = value - SQUARE * self.profile.reach() * dot(direction, direction).sqrt();
+        let mut ends = [p; 2];
+        for vertex in self.profile.edges() {
+            if dot(direction, vertex) >= level {
+                let [low, high] = ends.map(|end| end[1]);
+                ends = if vertex[1] < low {
+                    [vertex, ends[1]]
+                } else if vertex[1] > high {
+                    [ends[0], vertex]
+                } else {
+                    ends
+                };
+            }
+        }
+        ends.map(|p| out * p[0] + self.axis * p[1])
     }
 
     /// Where the body goes farthest in a unit direction `n`, and how that changes as it turns along a unit vector across.

@@ -224,3 +224,27 @@ proptest! {
         }
     }
 }
+
+/// Seen along the rulings a line is straight, and touches waves with a place between its ends: that is told, and not one beside an end.
+#[test]
+fn a_line_across_rulings_touches_where_it_is_seen_to() {
+    let waves = tabulated(
+        [Vec3::x(), Vec3::z(), -Vec3::y()],
+        &[[-2.0, 0.0, 0.9], [-1.0, 0.3, -0.6], [0.0, -0.2, 0.2], [1.0, 0.3, 0.1], [2.0, -0.1, -0.8]],
+    );
+    let surface = Surface::of(&waves).expect("a surface");
+    let Surface::Ruled(ruled) = &surface else { panic!("{surface:?}") };
+    let axis = Vec3::from([0.5901727520218889, -0.8494300250500171, 0.24828331345508783]).normalize();
+    let profile = line(1.4396860198722006);
+    let mut tool = Tool::new(&profile, axis);
+    tool.depth = ALLOWED;
+    let tip = Vec3::new(0.04954742267749695, 0.5748333916344147, -0.06707247991107577);
+    for depth in [1e-6, -1e-3] {
+        let tip = tip + Vec3::z() * (1e-6 - depth);
+        let found = searched(ruled, 1.0, &tip, &tool).expect("a clearance");
+        let place = found.place.expect("a place");
+        let (left, _) =
+            surface.point_distance(&(tip + place - found.normal * found.value)).expect("a distance");
+        assert!(left.abs() < 2e-8, "{left} {found:?}");
+    }
+}
