@@ -35,6 +35,8 @@ const ALONG: f64 = 1e-9;
 const SADDLE: f64 = 1e-6;
 /// Curvature, times the size of the coordinates, below which a surface is straight.
 const STRAIGHT: f64 = 1e-7;
+/// Least step along a vector in looking for a check surface, as a share of its band.
+pub(crate) const LEAST_STEP: f64 = 0.02;
 /// Rounding of a clearance, relative to the size of the coordinates: the slack of all band tests.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
@@ -291,6 +293,12 @@ impl Working {
 
     pub(crate) fn holds(&self, clearance: f64, size: f64) -> bool {
         clearance >= -self.inside - ROUNDING * size && clearance <= self.outside + ROUNDING * size
+    }
+
+    /// How far a tool may be in a check surface, or out of it again, and count as if it only touched it: no farther than a step along a vector may overlook,
+    /// so that of such places it hangs on the steps whether they are seen.
+    pub(crate) fn touch_limit(&self) -> f64 {
+        LEAST_STEP * self.band()
     }
 
     /// Whether a tool that begins a motion with such a clearance, stock left out, may be taken to stand in the position that this

@@ -315,6 +315,20 @@ fn start(failure: &Failure) -> Option<Text> {
     })
 }
 
+/// A check surface that the tool is in, or out of again, by too little to be told from a touch.
+fn only_touched(wanted: Relation, at: &Vec3, depth: f64) -> Text {
+    let by = if wanted == Relation::Past { "in it" } else { "out of it again" };
+    let words = format!(
+        "the surface to stop at is never met {}: up to {} it is only touched, as the tool is {by} by no more than {}",
+        relation(wanted),
+        place(at),
+        number(depth)
+    );
+    say("APT0641", words).hint(
+        "less than a fiftieth of its tolerances is no position of its own; TO ends where a touch begins",
+    )
+}
+
 /// Failures on the way.
 fn path(failure: &Failure) -> Text {
     match failure {
@@ -323,6 +337,7 @@ fn path(failure: &Failure) -> Text {
             format!("part and drive surface are tangent at {}, so there is no path between them", place(tip)),
         )
         .hint("choose a drive surface that stands on the part surface"),
+        Failure::NeverMet { relation, touched: Some(depth), at, .. } => only_touched(*relation, at, *depth),
         Failure::NeverMet { relation: wanted, nearest, at, is_there, turns_back, course, .. } => say(
             "APT0641",
             if *is_there {

@@ -8,6 +8,7 @@ mod finish;
 mod never_met;
 mod parallel_way;
 mod scout;
+mod shallow;
 mod spared;
 mod step;
 mod straight;
@@ -251,6 +252,9 @@ impl<'a> March<'a> {
                 cap = self.state.maximum_step;
                 continue;
             };
+            if event.is_shallow && !self.prepared.attitude.turns() {
+                return self.finished_on_vectors(&start, &event);
+            }
             // An end at rest in the band may lie farther across the path than a last vector may be long: then where the
             // path is.
             let held = (finals >= PATIENT_FINALS).then_some([here.part.clearance, here.drive.clearance]);

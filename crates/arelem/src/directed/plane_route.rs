@@ -156,19 +156,18 @@ pub(super) fn run(
     if patience.is_over() {
         return Err(MotionFailure::Cancelled);
     }
-    let along = |shift: f64| -> Result<Path, MotionFailure> {
+    let along = |shift: f64| -> Result<Option<Path>, MotionFailure> {
         let track = track(prepared, &drive, shift);
-        let found = choose(prepared, check, &track, &stop)?;
+        let Some(found) = choose(prepared, check, &track, &stop)? else { return Ok(None) };
         let points = cut(state, prepared, &track, found.x)?;
         let check_side = side(prepared, &stop, &track, found);
-        Ok(Path { points, check: 0, check_side, bent: Bent::none(&prepared.tip) })
+        Ok(Some(Path { points, check: 0, check_side, bent: Bent::none(&prepared.tip) }))
     };
     // The path through the present position; if that meets nothing, others in the band.
-    along(0.0)
-        .or_else(|failure| {
-            other_paths(prepared, &failure).into_iter().find_map(|shift| along(shift).ok()).ok_or(failure)
-        })
-        .map(Some)
+    along(0.0).or_else(|failure| {
+        let others = other_paths(prepared, &failure).into_iter();
+        others.map(along).find_map(Result::ok).ok_or(failure)
+    })
 }
 
 /// Shifts of the path along the drive surface's gradient, inside its band, that may meet what the path through the
@@ -235,16 +234,18 @@ fn track(prepared: &Prepared, drive: &Curve, shift: f64) -> Track {
     Track { curve, from, axis }
 }
 
-/// The stop asked for.
+/// The stop asked for; `None` where the vectors decide which one that is.
 fn choose(
     prepared: &Prepared,
     check: &CheckSurface,
     track: &Track,
     stop: &Curve,
-) -> Result<Candidate, MotionFailure> {
+) -> Result<Option<Candidate>, MotionFailure> {
     match check.relation {
         Relation::To | Relation::Past | Relation::On => crossing(prepared, check, track, stop),
-        Relation::TangentToDrive | Relation::TangentToPart => tangency(prepared, check, track, stop),
+        Relation::TangentToDrive | Relation::TangentToPart => {
+            tangency(prepared, check, track, stop).map(Some)
+        }
     }
 }
 
@@ -253,7 +254,7 @@ fn crossing(
     check: &CheckSurface,
     track: &Track,
     stop: &Curve,
-) -> Result<Candidate, MotionFailure> {
+) -> Result<Option<Candidate>, MotionFailure> {
     let on = check.relation == Relation::On;
     let reach = if on { 0.0 } else { prepared.tool.radius() };
     // A tool without width is TO and PAST a line at the same place.
@@ -276,6 +277,7 @@ fn crossing(
             nearest,
             at: track.at(x),
             is_there: prepared.checks[0].is_there(start, prepared.size),
+            touched: None,
             turns_back: None,
             course: track.never_meets(stop),
         });
@@ -286,16 +288,20 @@ fn crossing(
     let mut remaining = check.occurrence.max(1);
     let mut leaving = is_there(start);
     let mut clear = !leaving && start > 0.0;
-    let mut previous = 0.0;
+    let mut previous: Option<Candidate> = None;
+    let mut touched = None;
     for candidate in ahead {
         // Already there at the start: only the next position counts.
         if leaving && (1..=3).all(|k| is_there(value(candidate.x * f64::from(k) / 4.0))) {
-            previous = candidate.x;
+            previous = Some(candidate);
             continue;
         }
+        // Lines and circles are symmetric: between two positions the tool is the farthest in, or out again, half way.
+        let from = previous.replace(candidate).unwrap_or(Candidate { x: 0.0, level: 0.0 });
+        let between = value(0.5 * (from.x + candidate.x));
         if leaving {
             leaving = false;
-            clear = value(0.5 * (previous + candidate.x)) > 0.0;
+            clear = between > 0.0;
         }
         let label = if on {
             Relation::On
@@ -305,14 +311,39 @@ fn crossing(
             Relation::Past
         };
         clear = !clear;
-        if label == check.relation {
-            remaining -= 1;
-            if remaining == 0 {
-                return Ok(candidate);
+        if label != check.relation {
+            continue;
+        }
+        if from.level * candidate.level > 0.0 {
+            let limit = prepared.checks[0].touch_limit();
+            // Vectors about a circle run elsewhere in the band of the drive surface.
+            let unsure = if track.closed() { prepared.drive.band() } else { 0.0 };
+            if (between.abs() - limit).abs() < unsure {
+                return Ok(None);
+            }
+            if between.abs() <= limit {
+                touched.get_or_insert((between.abs(), candidate.x));
+                continue;
             }
         }
+        remaining -= 1;
+        if remaining == 0 {
+            return Ok(Some(candidate));
+        }
     }
-    Err(MotionFailure::NoneAhead { check: 0, relation: check.relation, found })
+    Err(match touched {
+        Some((depth, x)) => MotionFailure::NeverMet {
+            check: 0,
+            relation: check.relation,
+            nearest: depth,
+            at: track.at(x),
+            is_there: true,
+            touched: Some(depth),
+            turns_back: None,
+            course: Course::Analytic,
+        },
+        None => MotionFailure::NoneAhead { check: 0, relation: check.relation, found },
+    })
 }
 
 /// The candidates ahead, repeated over as many turns as the count can need.
@@ -539,3 +570,6 @@ impl Rising<'_> {
         near
     }
 }
+
+#[cfg(test)]
+mod tests;

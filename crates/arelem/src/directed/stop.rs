@@ -16,7 +16,7 @@ use super::{Prepared, is_tangent, proof::lowest};
 use crate::{
     attitude::Sweep,
     clearance::{Enough, Gauge, Memory, Tool, Witness, separation, upward_bend},
-    role::Working,
+    role::{LEAST_STEP, Working},
 };
 
 /// Bound of the steps along one cut vector; beyond it steps are a fixed share of the vector.
@@ -32,8 +32,6 @@ const DEEP_ENOUGH: f64 = 0.5;
 /// Share of how far a check surface is away that its distance need not be told closer, and in bands of it how near it is told in full.
 const FAR_SHARE: f64 = 1e-3;
 const NEAR: f64 = 2.0;
-/// Least step, as a share of the check surface's band.
-const LEAST_STEP: f64 = 0.02;
 /// Bisections that bring a bracket to rounding.
 const BISECTIONS: u32 = 60;
 /// Places, each half way from the one before to the end of a vector, at which it is looked from where the tool comes to that.
@@ -56,11 +54,34 @@ enum Status {
 #[derive(Debug, Clone, Copy)]
 struct Watch {
     status: Status,
+    /// How far the function has been from zero since that began, and the side on which the tool was clear then, before or after.
+    farthest: f64,
+    clear_on: f64,
     count: u32,
+    /// A position was counted before and after which the tool is no farther in the check surface, or out of it, than vectors may be elsewhere in their bands.
+    is_shallow: bool,
     /// A position and the radius around it in which nothing happens.
     quiet: (Vec3, f64),
     /// In its band the path was still coming nearer at the end of the last vector.
     falling: bool,
+}
+
+impl Watch {
+    /// How far the tool was in the check surface, or out of it, both from where motions end and from where the tool just touches, if what changes its sign
+    /// does so back again on the side from which it came.
+    fn depth(&self, working: &Working, (label, side): (Relation, f64)) -> Option<f64> {
+        let rest = if label == Relation::Past { working.rest() } else { -working.rest() };
+        let comes_back = !working.gauge.on && side == self.clear_on;
+        comes_back.then(|| (self.farthest - rest.max(0.0)).max(0.0))
+    }
+
+    /// Notes the next sample, the first one after a change or one more.
+    fn go_on(&mut self, changes: bool, (value, side): (f64, f64)) {
+        if changes {
+            (self.farthest, self.clear_on) = (0.0, side);
+        }
+        self.farthest = self.farthest.max(value.abs());
+    }
 }
 
 /// A stopping position found on a cut vector.
@@ -75,6 +96,8 @@ pub(super) struct Event {
     pub(super) side: f64,
     /// The path touches the check surface there without crossing it: the position is on the path already.
     pub(super) grazed: bool,
+    /// Other vectors, elsewhere in their bands, may come to no such position.
+    pub(super) is_shallow: bool,
 }
 
 /// Watches all check surfaces of a motion.
@@ -87,6 +110,8 @@ pub(super) struct Watcher<'a> {
     pub(super) met: usize,
     /// Least distance from a relation, where and of which check surface.
     pub(super) nearest: (f64, Vec3, usize),
+    /// Where what may not count as a position ends last: how far the tool was in the check surface or out of it at most, the place, and which one that is.
+    pub(super) touched: Option<(f64, Vec3, usize)>,
     /// Looks for the nearest approach on every vector, also where no position is within reach.
     thorough: bool,
     /// A distance from a relation up to which an approach need not be told closer.
@@ -103,15 +128,16 @@ impl<'a> Watcher<'a> {
             watches: Rc::new([]),
             met: 0,
             nearest: (f64::INFINITY, prepared.tip, 0),
+            touched: None,
             thorough: false,
             near_enough: f64::NEG_INFINITY,
             memories: checks.iter().map(|_| Default::default()).collect(),
         };
         let watch = |(index, check): (usize, &CheckSurface)| {
-            let value = if is_tangent(check.relation) {
-                f64::INFINITY
+            let (value, clear_on) = if is_tangent(check.relation) {
+                (f64::INFINITY, 1.0)
             } else {
-                watcher.value(index, &prepared.tool, &prepared.tip).0
+                watcher.value(index, &prepared.tool, &prepared.tip)
             };
             let working = &prepared.checks[index];
             let rest = if working.gauge.on { 0.0 } else { working.rest() };
@@ -122,7 +148,16 @@ impl<'a> Watcher<'a> {
             } else {
                 Status::Inside
             };
-            Watch { status, count: 0, quiet: (prepared.tip, 0.0), falling: false }
+            let quiet = (prepared.tip, 0.0);
+            Watch {
+                status,
+                farthest: value.abs(),
+                clear_on,
+                count: 0,
+                is_shallow: false,
+                quiet,
+                falling: false,
+            }
         };
         watcher.watches = checks.iter().enumerate().map(watch).collect();
         watcher
@@ -210,6 +245,20 @@ impl<'a> Watcher<'a> {
         })
     }
 
+    /// Whether the tool has come from farther in the check surface, or out of it, than a touch is, so that it is at the position asked for where it now
+    /// comes out of it or into it.
+    pub(super) fn awaits(&self, index: usize) -> bool {
+        let (watch, relation) = (&self.watches[index], self.checks[index].relation);
+        let waiting = match relation {
+            Relation::Past => Status::Inside,
+            _ => Status::Clear,
+        };
+        let depth = watch.depth(self.working(index), (relation, watch.clear_on));
+        watch.status == waiting
+            && depth.is_none_or(|depth| depth > self.working(index).touch_limit())
+            && watch.count + 1 == self.checks[index].occurrence.max(1)
+    }
+
     /// How far the function is above what it is where the tool just touches the check surface.
     fn apart(&self, index: usize, value: f64) -> f64 {
         let working = self.working(index);
@@ -249,11 +298,12 @@ impl<'a> Watcher<'a> {
     }
 
     fn follow(&mut self, index: usize, watch: Watch, sweep: &Sweep<'_>) -> (Option<Event>, Watch) {
-        let working = self.working(index);
+        let prepared = self.prepared;
+        let working = &prepared.checks[index];
         let stretch = sweep.stretch(working.gauge.reach(&self.prepared.tool));
         let length = sweep.length;
         let (band, size) = (working.inside.max(working.outside), self.prepared.size);
-        let least = (LEAST_STEP * working.band()).max(1e-10 * size);
+        let least = working.touch_limit().max(1e-10 * size);
         let on = working.gauge.on;
         let relation = self.checks[index].relation;
         let wanted = self.checks[index].occurrence.max(1);
@@ -278,12 +328,13 @@ impl<'a> Watcher<'a> {
                 .filter(|label| *label == relation)
                 .and_then(|label| self.bracket(index, sweep, [(x, value), (next_x, next)], (label, side)));
             crossed |= label.is_some_and(|label| label != relation) || crossing.is_some();
-            if let Some((at, side)) = crossing {
-                watch.count += 1;
-                if watch.count >= wanted {
-                    let tip = sweep.at(at).0;
-                    return (Some(Event { check: index, tip, x: at, side, grazed: false }), watch);
-                }
+            // In a check surface the tool may already be nearer to its other side.
+            let clear_on = if next > 0.0 { side } else { side_before };
+            let depth = label.and_then(|label| watch.depth(working, (label, clear_on)));
+            watch.go_on(label.is_some(), (next, clear_on));
+            let event = crossing.and_then(|found| self.count(index, &mut watch, sweep, (found, depth)));
+            if event.is_some() {
+                return (event, watch);
             }
             let clear = watch.status == Status::Clear && value > 0.0 && next > 0.0;
             if clear
@@ -292,13 +343,10 @@ impl<'a> Watcher<'a> {
                 && let Some(at) = self.passage(index, sweep, [x, next_x], side_before)
             {
                 crossed = true;
-                watch.count += u32::from(relation != Relation::On);
-                if relation != Relation::On && watch.count >= wanted {
-                    let side = if relation == Relation::Past { side } else { side_before };
-                    return (
-                        Some(Event { check: index, tip: sweep.at(at).0, x: at, side, grazed: false }),
-                        watch,
-                    );
+                let side = if relation == Relation::Past { side } else { side_before };
+                let event = self.count(index, &mut watch, sweep, ((at, side), None));
+                if event.is_some() {
+                    return (event, watch);
                 }
             }
             if let Some(bracket) = trail.step(next_x, (next, side)) {
@@ -313,6 +361,27 @@ impl<'a> Watcher<'a> {
         let way = self.way_to_change(index, sweep, (length, trail.value));
         watch.quiet = (sweep.at(length).0, way.min(clear_of));
         (None, watch)
+    }
+
+    /// Counts a position at a distance along a vector, before which the tool was so far in the check surface or out of it; the stop if it is the last one.
+    fn count(
+        &mut self,
+        index: usize,
+        watch: &mut Watch,
+        sweep: &Sweep<'_>,
+        ((x, side), depth): ((f64, f64), Option<f64>),
+    ) -> Option<Event> {
+        let tip = sweep.at(x).0;
+        // A touch: the tool is not past the check surface then, or has not come to it anew.
+        if let Some(depth) = depth.filter(|depth| *depth <= self.working(index).touch_limit()) {
+            self.touched = Some((depth, tip, index));
+            return None;
+        }
+        watch.count += 1;
+        watch.is_shallow |= depth.is_some_and(|depth| depth <= self.near(index));
+        let is_shallow = watch.is_shallow;
+        let is_last = watch.count >= self.checks[index].occurrence.max(1);
+        is_last.then_some(Event { check: index, tip, x, side, grazed: false, is_shallow })
     }
 
     /// How far the tool goes at least, from a distance along a vector, before the function changes its sign. In a surface that ends the sides end with

@@ -166,6 +166,8 @@ fn walk(
             }
             let step = if turn > 0.0 { finest.max(move_length / 64.0) } else { finest };
             let ahead = (value.abs() - band).max(step);
+            // In the band what the tool is least or most in the check surface may be at a vertex.
+            let ahead = if seen.is_none() { ahead.min(move_length - at) } else { ahead };
             last = Some((value, ahead));
             at += ahead;
         }

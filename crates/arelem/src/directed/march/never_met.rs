@@ -98,7 +98,12 @@ impl March<'_> {
             }
             here = next;
         }
-        let (nearest, at, check) = if watcher.nearest.0 <= ahead.0 { watcher.nearest } else { ahead };
+        let touched = self.watcher.touched.or(watcher.touched);
+        let (nearest, at, check) = match touched {
+            Some(touch) => touch,
+            None if watcher.nearest.0 <= ahead.0 => watcher.nearest,
+            None => ahead,
+        };
         if nearest.is_finite() {
             return MotionFailure::NeverMet {
                 check,
@@ -106,6 +111,7 @@ impl March<'_> {
                 nearest,
                 at,
                 is_there: self.prepared.checks[check].is_as_near(nearest, self.prepared.size),
+                touched: touched.map(|touch| touch.0),
                 turns_back: self.turns_back(),
                 course,
             };

@@ -41,7 +41,8 @@ pub(super) fn run(
         length *= 2.0;
         from = to;
     }
-    let (nearest, at, check) = watcher.nearest;
+    let touched = watcher.touched;
+    let (nearest, at, check) = touched.unwrap_or(watcher.nearest);
     if checks.iter().all(|c| is_tangent(c.relation)) {
         return Err(tangency.failure());
     }
@@ -54,6 +55,7 @@ pub(super) fn run(
             nearest,
             at,
             is_there: prepared.checks[check].is_as_near(nearest, prepared.size),
+            touched: touched.map(|touch| touch.0),
             turns_back: None,
             course: Course::Away { travelled },
         }

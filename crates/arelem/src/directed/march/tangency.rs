@@ -234,7 +234,14 @@ impl<'a> Watch<'a> {
             if let Some((vertex, side)) = self.follow(index, from, to)? {
                 let x = (vertex.tip - from.tip).norm();
                 if first.is_none_or(|best| x < best.x) {
-                    first = Some(Event { check: index, tip: vertex.tip, x, side, grazed: false });
+                    first = Some(Event {
+                        check: index,
+                        tip: vertex.tip,
+                        x,
+                        side,
+                        grazed: false,
+                        is_shallow: false,
+                    });
                 }
             }
         }

@@ -171,7 +171,14 @@ impl Watcher<'_> {
         let (vertex, _, side) = self.on_path(index, sweep, x)?;
         self.note(index, value.abs(), &vertex.tip);
         let grazed = value >= low;
-        (watch.count >= wanted).then_some(Event { check: index, tip: vertex.tip, x, side, grazed })
+        (watch.count >= wanted).then_some(Event {
+            check: index,
+            tip: vertex.tip,
+            x,
+            side,
+            grazed,
+            is_shallow: false,
+        })
     }
 
     /// Where a vector that crosses the check surface's relation belongs to a path that only touches it: vectors run
@@ -184,12 +191,12 @@ impl Watcher<'_> {
         let (x, value) = least([0.0, sweep.length], &at)?;
         let [low, high] = self.room(index);
         let (vertex, _, side) = self.on_path(index, sweep, x)?;
-        let event = Event { check: index, tip: vertex.tip, x, side, grazed: true };
+        let event = Event { check: index, tip: vertex.tip, x, side, grazed: true, is_shallow: false };
         (value >= low && value <= high).then_some(event)
     }
 
     /// How near a vector comes to the check surface where the path may touch it.
-    fn near(&self, index: usize) -> f64 {
+    pub(super) fn near(&self, index: usize) -> f64 {
         let Self { prepared, .. } = self;
         NEAR * (prepared.part.band() + prepared.drive.band() + self.working(index).band())
     }

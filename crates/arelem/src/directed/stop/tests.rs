@@ -5,9 +5,9 @@ use std::cell::Cell;
 
 use apt_geometry::{
     Vec3,
-    canonical::Geometry,
+    canonical::{Geometry, Quadric},
     cutter::Cutter,
-    motion::{MotionCommand, Relation, Turn},
+    motion::{DriveSide, MotionCommand, Relation, Turn},
     patience::Patience,
     surface::Surface,
 };
@@ -18,7 +18,7 @@ use crate::{
     clearance::{EVALUATIONS, Enough, Memory, Tool, separation},
     directed::prepare::prepare,
     error::MotionFailure,
-    tests::{Program, circle, cylinder, motion, plane, quadric, sphere, v},
+    tests::{Program, circle, cylinder, motion, named, plane, quadric, sphere, v},
     verify::{tests::lofts, verify},
 };
 
@@ -195,4 +195,72 @@ fn what_is_remembered_of_a_check_surface_changes_no_clearance() {
             assert!(is_same, "{remembered:?} and {fresh:?} at {tip}");
         }
     }
+}
+
+/// Where one vector leads into a surface by no more than steps may overlook, a fiftieth of the band, and the next one out again on the same side, the
+/// tool has touched it: it is not past it. The other way round it has not come to it anew. Farther in it is, and where it goes through.
+#[test]
+fn what_is_in_a_surface_by_less_than_a_step_is_not_past_it() {
+    let (drive, check) = (plane(0.0, 1.0, 0.0, 0.0), plane(1.0, 0.0, 0.0, 0.0));
+    let p = needle(0.01, 0.005);
+    let ball = Cutter::from_numbers(&[0.5, 0.25], 1.0).expect("a cutter");
+    let stopped = |relation: Relation, along: &[f64]| {
+        let MotionCommand::Drive { drive, checks, .. } =
+            motion(Turn::Forward, &drive, &[(relation, 1, &check)])
+        else {
+            unreachable!("a motion");
+        };
+        let mut prepared =
+            prepare(&p.state, Turn::Forward, &drive, &checks, &mut Vec::new(), Patience::default())
+                .expect("a motion");
+        (prepared.tool, prepared.tip) = (Tool::new(ball.clone(), Vec3::z()), v(along[0], 0.0, 2.0));
+        let mut watcher = Watcher::new(&prepared, &checks);
+        let places = along.iter().enumerate().map(|(k, x)| v(*x, 0.0, 2.0 - 0.1 * k as f64));
+        let places: Vec<Vec3> = places.collect();
+        let vectors = places.windows(2).map(|pair| {
+            let axis = Vec3::z();
+            Sweep::new(&prepared.tool, (&pair[0], &axis), (&pair[1], &axis))
+        });
+        vectors.map(|vector| watcher.scan(&vector)).position(|event| event.is_some())
+    };
+    // The ball touches the plane at x = −.25, and again at x = .25.
+    let depths = [(1e-6, None), (0.0002, None), (0.0004, Some(1)), (0.4, Some(1)), (0.6, Some(0))];
+    for (depth, at) in depths {
+        assert_eq!(stopped(Relation::Past, &[-1.0, -0.25 + depth, -1.0]), at, "{depth}");
+    }
+    for (clear, at) in [(1e-6, None), (0.0002, None), (0.0004, Some(1)), (0.1, Some(1))] {
+        assert_eq!(stopped(Relation::To, &[-0.1, -0.25 - clear, -0.1]), at, "{clear}");
+    }
+}
+
+/// Between two vectors a ball touches one branch of a hyperbola, a little farther in than where motions end, and goes away from it: it does not end past it.
+#[test]
+fn a_ball_that_touches_a_branch_of_a_hyperbola_is_not_past_it() {
+    let part = sphere(-5.208353327512224, -2.0365204985022602, -1.441116980945119, 4.547810533408308);
+    let drive = sphere(-0.5880981285256697, 5.637803385139276, 2.996323777565291, 6.990165624160236);
+    let hyperbola = Geometry::Hyperbola(Quadric {
+        coefficients: [
+            0.005115217843847424,
+            -0.07312684686360733,
+            0.0,
+            -0.46506796383282134,
+            0.0,
+            0.0,
+            -0.06773276266589956,
+            -0.32971892676645187,
+            -0.11699659214964706,
+            0.0,
+        ],
+    });
+    let mut p = Program::new();
+    p.tolerance(0.01, 0.005)
+        .cutter(&[0.4356463409940147, 0.21782317049700736])
+        .run(&MotionCommand::MaximumStep(10.0))
+        .from(-1.7166157495342078, -1.2775828209032412, 1.9468240198828721)
+        .run(&MotionCommand::PartSurface(named(&part)))
+        .go(&[(Relation::On, &drive)])
+        .side(DriveSide::On)
+        .indirv(0.7171240246344116, -0.009004206414390125, -0.696887406658343);
+    let refused = p.attempt(&motion(Turn::Forward, &drive, &[(Relation::Past, 1, &hyperbola)]));
+    let Err(MotionFailure::NeverMet { .. }) = refused else { panic!("{refused:?}") };
 }

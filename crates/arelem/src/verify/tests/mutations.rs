@@ -9,8 +9,9 @@ use super::{
     super::{Evidence, Rule, VerifyError, verify},
     cylinder,
     paths::{self, BAND, Curved, Path},
+    plane,
 };
-use crate::sequence::CutSequence;
+use crate::sequence::{CutSequence, ToolPosition};
 
 fn judge(sequence: &CutSequence) -> Evidence {
     verify(sequence, &|| false).unwrap()
@@ -189,6 +190,24 @@ fn a_position_past_what_is_cut_by_less_than_the_middle_of_the_band_is_one() {
         let (near, at_end): (f64, f64) = (1.25 - depth, 1.25 + left);
         let end = 2.0 + sense * (at_end * at_end - near * near).sqrt();
         assert_stop_in((BAND.1, BAND.0), Relation::Past, [2.0, 1.0 - depth, 0.0], end, is_past);
+    }
+}
+
+/// What leads a little into a check surface and out again does so about a vertex, between two places at which the clearance is read: it is read there, too.
+#[test]
+fn a_position_past_what_is_only_brushed_at_a_vertex_is_one() {
+    let depth = 0.0002;
+    for k in 0..8 {
+        let mut brushed = paths::to_circle(Relation::Past, 1).sequence;
+        brushed.drive = None;
+        let stop = &mut brushed.stop.as_mut().unwrap().role;
+        (stop.surface.geometry, stop.side) = (plane([0.0, 1.0, 0.0], 0.0), -1.0);
+        let from = -1.0 - 1e-4 * f64::from(k);
+        let tip = |x: f64| Vec3::new(x, -0.25 + depth - x.abs(), 0.0);
+        brushed.start.tip = tip(from);
+        brushed.points = [0.0, depth].map(|x| ToolPosition { tip: tip(x), ..brushed.start }).to_vec();
+        // A corner as sharp as that without a drive surface is no path, but that is another rule.
+        assert!(!rules(&brushed).contains(&Rule::StopEvent), "from {from}");
     }
 }
 
