@@ -159,6 +159,14 @@ impl Ruled {
         }
     }
 
+    /// A direction to the natural side at a place: the natural normal, at an edge of a sculptured surface that of all faces there.
+    fn facing(&self, touch: &Touch) -> Option<Vec3> {
+        match self {
+            Self::Sculptured(surface) => surface.facing(touch, JOINT),
+            _ => self.natural(touch),
+        }
+    }
+
     /// The common direction of all rulings.
     fn axis(&self) -> Option<Vec3> {
         match self {
@@ -329,8 +337,7 @@ impl<'a> Bodies<'a> {
     /// Whether the tool is on its side of the surface where it is nearest.
     fn is_on_side(&self, touch: &Touch) -> Option<bool> {
         Some(
-            self.surface.ends_at(touch)
-                || self.side * touch.outward.dot(&self.surface.natural(touch)?) <= 0.0,
+            self.surface.ends_at(touch) || self.side * touch.outward.dot(&self.surface.facing(touch)?) <= 0.0,
         )
     }
 

@@ -1,6 +1,7 @@
 //! Sculptured surfaces as patches that are cubic both ways. A patch without weights is one; for the others cubics through four
 //! places each way stand, and how far those are off at most counts as an error of every distance ([`misfit`]).
 
+mod facing;
 mod misfit;
 
 use std::{
@@ -174,15 +175,7 @@ impl SculpturedStrips {
 
     /// The natural normal at a place of a patch.
     pub(super) fn natural(&self, touch: &Touch) -> Option<Vec3> {
-        let patch = self.sheet.patches.get(touch.piece)?;
-        let normal = |at: [f64; 2]| {
-            let [_, along, across] = jet(&patch.net, at);
-            let (a, b) = (along.norm(), across.norm());
-            let normal = along.cross(&across);
-            (normal.norm() > SINGULAR * a * b).then(|| normal.normalize())
-        };
-        let at = [touch.along, touch.across];
-        normal(at).or_else(|| normal(at.map(|x| x + INWARD * (0.5 - x))))
+        normal_at(&self.sheet.patches.get(touch.piece)?.net, [touch.along, touch.across])
     }
 
     /// Whether a place is as close, in parameters, to a side of its patch at which the surface has an edge.
@@ -192,6 +185,17 @@ impl SculpturedStrips {
         let sharp = |patch: &Patch| patch.edges.sides.iter().zip(at_side).any(|(edge, at)| *edge && at);
         self.sheet.patches.get(touch.piece).is_none_or(sharp)
     }
+}
+
+/// The unit normal, along × across, at a place of a net; where it has none that a little way inside.
+fn normal_at(net: &Net, at: [f64; 2]) -> Option<Vec3> {
+    let normal = |at: [f64; 2]| {
+        let [_, along, across] = jet(net, at);
+        let (a, b) = (along.norm(), across.norm());
+        let normal = along.cross(&across);
+        (normal.norm() > SINGULAR * a * b).then(|| normal.normalize())
+    };
+    normal(at).or_else(|| normal(at.map(|x| x + INWARD * (0.5 - x))))
 }
 
 /// The direction that all parts have straight lines along, each part the same curve shifted.

@@ -40,12 +40,13 @@ fn from_nearest(surface: &Ruled, x: &Vec3, tool: &Tool<'_>) -> Option<(Reading, 
     let beside = away.norm_squared() - height * height;
     let is_in_fan = size > SURE_DISTANCE * surface.size() || beside > touch.gap * (2.0 * size + touch.gap);
     if size > 1e-6 * (1.0 + surface.size()) && height.abs() < size * (1.0 - 1e-9) && is_in_fan {
-        let normal = away * (height.signum() / size);
+        let side = surface.facing(&touch)?.dot(&away);
+        let normal = away * (side.signum() / size);
         // Of patches that go on behind the ends of a sculptured surface it is not known where they end; about an edge the directions
         // of both sides are not as far from that of a place.
         let is_past = matches!(surface, Ruled::Sculptured(_)) && height.abs() < PAST_END * size;
         let is_beyond = is_past || surface.ends_at(&touch);
-        return Some((Reading::new(size.copysign(height), normal, error), is_beyond));
+        return Some((Reading::new(size.copysign(side), normal, error), is_beyond));
     }
     Some((Reading::new(height, natural, error), false))
 }

@@ -19,6 +19,7 @@ mod round_numbers;
 mod ruled;
 mod rulings;
 mod searched;
+mod sharp;
 mod stock;
 mod straight;
 mod turning;
