@@ -447,7 +447,8 @@ impl<'a> Watcher<'a> {
 
     /// Where the tool goes through the check surface between two samples at which it is clear of it, on one side and on the
     /// other: a tool thinner than the steps, or than the place in the band where it stops. It is a TO and a PAST position.
-    /// `None` where it only gets to the other side around the edge of the surface.
+    /// `None` where it only gets to the other side around the edge of the surface: clear of that on the one side, be it that it touches on the other,
+    /// where the surface is taken for a body behind its end.
     fn passage(&self, index: usize, sweep: &Sweep<'_>, [low, high]: [f64; 2], side: f64) -> Option<f64> {
         let (mut low, mut high) = (low, high);
         for _ in 0..BISECTIONS {
@@ -463,7 +464,7 @@ impl<'a> Watcher<'a> {
         }
         let touching = SAME_PLACE * self.prepared.size;
         let through =
-            [low, high].iter().any(|x| self.apart(index, self.value_at(index, sweep, *x).0) <= touching);
+            [low, high].iter().all(|x| self.apart(index, self.value_at(index, sweep, *x).0) <= touching);
         through.then_some(0.5 * (low + high))
     }
 

@@ -331,3 +331,49 @@ fn stock_counts_for_on_in_apt4() {
         proven(&p);
     }
 }
+
+/// A wall across the path whose straight continuation, twisted as it is at its corner, is higher than it and ends beside the path.
+fn twisted_wall() -> Geometry {
+    let rows = [
+        [
+            [5.086886178336, -0.067498044108, -0.029817293227],
+            [5.010975590432, 0.696572816104, -0.076683919703],
+            [4.85952042559, 1.357755869049, 0.148942141275],
+            [4.799538143442, 1.91530473761, -0.083042070863],
+        ],
+        [
+            [4.886278435588, 0.054975868, 0.637605619478],
+            [4.932962218087, 0.645856143338, 0.653909501666],
+            [4.910357620453, 1.285559254178, 0.681576604303],
+            [5.197913398077, 2.049440818791, 0.705650036374],
+        ],
+        [
+            [4.971341948886, -0.016852575726, 1.334352262612],
+            [4.792444884369, 0.68690678254, 1.302521106019],
+            [5.107815839906, 1.329956562215, 1.339361846933],
+            [4.940949903874, 1.997926476996, 1.370494695432],
+        ],
+        [
+            [5.063862303818, 0.041822935341, 1.936885155271],
+            [4.862019130901, 0.729914398933, 1.946620051268],
+            [4.809739840324, 1.311793171018, 2.055456507505],
+            [5.340333054814, 1.963904060601, 2.10744594404],
+        ],
+    ];
+    made(vec![Patch::from_points(&std::array::from_fn(|i| std::array::from_fn(|j| Vec3::from(rows[j][i]))))])
+}
+
+/// The tool passes the corner of what goes on beyond the wall .036 away, on the way from one side of it to the other: what leads away from that
+/// end, square to it, is met from the one side only and is no surface to be past of.
+#[test]
+fn a_tool_that_passes_beside_a_corner_does_not_meet_the_surface() {
+    let (path, wall) = (line(0.0, 3.14661, 6.02287, 2.72858), twisted_wall());
+    for relation in [To, Past] {
+        let mut p = Program::new();
+        p.tolerance(0.005, 0.006).cutter(&[0.4329, 0.18788, 0.05242, 0.19175, 3.78236, 8.28166, 10.8745]);
+        p.from(0.0, 3.14661, 0.3).go(&[(On, &path), (To, &level(0.3)), (On, &x(0.0))]);
+        p.indirv(1.0, 0.0, 0.0).side(TlOn);
+        let failure = p.attempt(&motion(Forward, &path, &[(relation, 1, &wall)]));
+        assert!(failure.is_err(), "{relation:?} at {}", p.tip());
+    }
+}

@@ -18,6 +18,8 @@ const MAX_ITERATIONS: u32 = 80;
 const RESOLUTION: f64 = 1e-9;
 /// The same where only the value counts: beside the least one it changes with the square.
 const RESOLUTION_OF_VALUE: f64 = 1e-6;
+/// Share of a vector beside the least value on it at which the tool is still on the same side of the surface, if it does not get around its edge.
+const BESIDE: f64 = 4.0 * RESOLUTION;
 /// How fast the path goes along at most by the way along a vector: it leads at no more than 60° to that.
 const PATH_SPEED: f64 = 2.0;
 /// Share of the vector at its ends that belongs to its neighbours.
@@ -164,6 +166,11 @@ impl Watcher<'_> {
         // Where the path itself changes sides the vectors do so near by, and that is the position.
         let side = |x: f64| self.on_path(index, sweep, x).map(|found| found.2);
         if relation == Relation::On && side(0.0)? != side(sweep.length)? {
+            return None;
+        }
+        // Where the tool gets around the edge of the surface the value leaps, and is least on the one side of that only.
+        let beside = BESIDE * sweep.length;
+        if relation == Relation::To && side(x - beside)? != side(x + beside)? {
             return None;
         }
         watch.status = Status::Touching;
