@@ -184,6 +184,40 @@ fn a_pass_begins_at_a_pole_and_ends_at_one() {
     }
 }
 
+/// The edge of the sphere at a pole is one point, and so is a pass along it.
+#[test]
+fn a_pass_along_a_pole_is_one_location() {
+    let program = |axis: &str, command: &str| {
+        report(&format!(
+            "PARTNO POLES\nMULTAX\nCUTTER/1,.5\nINTOL/.002\nOUTTOL/.002\nMAXDP/2\n\
+             C=SCURV/CURSEG,(POINT/0,0,-5),(POINT/5,0,0),(POINT/0,0,5)\n\
+             S=SSURF/REVOLV,C,AXIS,(POINT/0,0,0),(VECTOR/0,0,1),CCLW,0,360\n\
+             SCON/DS,S,PARAM,0,1,0,3,AT,NORMAL\nSCON/PS,TO,S,MINUS,0\nSCON/AXIS,{axis}\n\
+             SCON/FEED,1,2,3,4\nSCON/STEPOV,0,2,0,0\n{command}\nFINI\n"
+        ))
+    };
+    for (u, z) in [(0, -5.0), (1, 5.0)] {
+        for axis in ["NORMDS,MINUS".to_owned(), format!("(VECTOR/0,0,{})", 2 * u - 1)] {
+            let report = program(&axis, &format!("SMIL/PATH,DS,PARAM,{u},0,CRSSPL,PLUS"));
+            assert_eq!(numbers(&report), [0; 0], "{axis}: {}", report["diagnostics"]);
+            let ends = ends(&report);
+            assert_eq!(ends.len(), 1, "{axis}: {ends:?}");
+            assert!(distance(&ends[0], &[0.0, 0.0, z]) < 0.003, "{axis}: {ends:?}");
+        }
+    }
+    // From pole to pole, with an axis that leans forward by an angle at both as everywhere.
+    for (axis, lean) in [("NORMDS,MINUS", 0.0), ("ATANGL,PS,0,CUTANG,10", 10f64)] {
+        let report = program(axis, "SMIL/ZIGZAG,DS,PARAM,0,0,CRSSPL,PLUS,STEPOV,PLUS");
+        assert_eq!(numbers(&report), [0; 0], "{axis}: {}", report["diagnostics"]);
+        let ends = ends(&report);
+        let most = 0.003 + lean.to_radians();
+        for (end, z) in [(ends.first(), -5.0), (ends.last(), 5.0)] {
+            let end = end.unwrap();
+            assert!(distance(end, &[0.0, 0.0, z]) < most, "{axis}: {end:?}");
+        }
+    }
+}
+
 /// The message of the only error.
 fn the_error(text: &str) -> String {
     let report = report(text);

@@ -57,10 +57,14 @@ impl std::fmt::Display for GuideDirection {
 pub struct GuidePoint {
     /// The point.
     pub position: Vec3,
-    /// Derivative by the running parameter.
+    /// Derivative by the running parameter; null on an edge that is one point.
     pub along: Vec3,
+    /// Unit direction in which the running parameter grows; on an edge that is one point its limit from inside the surface.
+    pub forward: Vec3,
     /// Derivative by the other parameter; the cross direction of a curve, null if it has none.
     pub across: Vec3,
+    /// The unit direction of that, on an edge of a surface that is one point its limit from inside; null if there is none.
+    pub sideways: Vec3,
     /// Unit normal of a surface, cross direction of a curve; null if there is none.
     pub normal: Vec3,
     /// Unit direction of the projection to the part surface.
@@ -145,28 +149,27 @@ impl<'a> GuideElement<'a> {
             Element::Surface { surface, .. } => {
                 let at = surface.evaluate_global(u, v).ok_or(GuideError::Outside { u, v })?;
                 let normal = surface.normal_global(u, v).map_or(Vec3::zeros(), |normal| normal.direction);
-                let (along, across) = match direction {
-                    FeedDirection::Spline => (at.du, at.dv),
-                    FeedDirection::CrossSpline => (at.dv, at.du),
+                let [by_u, by_v] = surface.tangents_global(u, v).ok_or(GuideError::Outside { u, v })?;
+                let ([along, across], [forward, sideways]) = match direction {
+                    FeedDirection::Spline => ([at.du, at.dv], [by_u, by_v]),
+                    FeedDirection::CrossSpline => ([at.dv, at.du], [by_v, by_u]),
                 };
-                GuidePoint { position: at.position, along, across, normal, projection: Vec3::zeros() }
+                let (position, projection) = (at.position, Vec3::zeros());
+                GuidePoint { position, along, forward, across, sideways, normal, projection }
             }
             Element::Curve { curve, .. } => {
                 let parameter = curve.unnumbered(u);
                 let (arc, _) = curve.locate(parameter).ok_or(GuideError::Outside { u, v })?;
                 let at = curve.evaluate_global(parameter).ok_or(GuideError::Outside { u, v })?;
                 let across = curve.given_cross_at(parameter).unwrap_or_else(Vec3::zeros);
-                let normal = across.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
-                GuidePoint {
-                    position: at.position,
-                    along: at.first * curve.rate(arc),
-                    across,
-                    normal,
-                    projection: Vec3::zeros(),
-                }
+                let unit = |way: Vec3| way.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vec3::zeros);
+                let along = at.first * curve.rate(arc);
+                let (forward, sideways, normal) = (unit(along), unit(across), unit(across));
+                let (position, projection) = (at.position, Vec3::zeros());
+                GuidePoint { position, along, forward, across, sideways, normal, projection }
             }
         };
-        if point.along.norm() <= f64::MIN_POSITIVE {
+        if point.forward == Vec3::zeros() {
             return Err(missing(GuideDirection::Tangent));
         }
         let (towards, what) = match self.projection {

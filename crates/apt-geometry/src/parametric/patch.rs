@@ -170,6 +170,18 @@ impl Patch {
         PatchNormal { direction: Vec3::zeros(), regular: false }
     }
 
+    /// The unit tangents along u and along v; on an edge that is one point, along which a parameter leads nowhere, their limit from inside (first
+    /// order). Null where there is none.
+    pub fn tangents(&self, u: f64, v: f64) -> [Vec3; 2] {
+        let at = self.evaluate(u, v);
+        let least = DEGENERATE * self.size();
+        let inward = |t: f64| if t > 0.5 { -1.0 } else { 1.0 };
+        let unit = |tangent: Vec3, inside: Vec3| {
+            tangent.try_normalize(least).or_else(|| inside.try_normalize(least)).unwrap_or_else(Vec3::zeros)
+        };
+        [unit(at.du, at.duv * inward(v)), unit(at.dv, at.duv * inward(u))]
+    }
+
     /// The place at (u, v), which may lie outside of 0 to 1: there along the tangent plane of the nearest place of the
     /// patch (first order), for the search of contacts only.
     pub fn extended(&self, u: f64, v: f64) -> PatchPoint {

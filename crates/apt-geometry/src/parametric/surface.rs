@@ -163,6 +163,12 @@ impl SculpturedSurface {
         self.patches.get(patch).map(|patch| patch.normal(u, v))
     }
 
+    /// The unit tangents along u and along v at global parameters; on an edge that is one point their limits from inside, null where there is none.
+    pub fn tangents_global(&self, u: f64, v: f64) -> Option<[Vec3; 2]> {
+        let (patch, u, v) = self.locate(u, v)?;
+        self.patches.get(patch).map(|patch| patch.tangents(u, v))
+    }
+
     /// The image under an affine map.
     pub fn transformed(&self, matrix: &Matrix) -> SculpturedSurface {
         SculpturedSurface {

@@ -237,7 +237,7 @@ impl Job<'_> {
         sink: &mut Sink<'_>,
     ) -> Option<Tilted> {
         let axis = station.pose.axis;
-        let forward = station.guide.along * course.sign;
+        let forward = station.guide.forward * course.sign;
         let across = axis.cross(&forward).try_normalize(0.0).unwrap_or_else(|| perpendicular(&axis));
         let ahead = across.cross(&axis);
         let pivot = station.center;

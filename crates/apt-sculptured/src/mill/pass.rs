@@ -28,6 +28,8 @@ const CAUTION: f64 = 0.95;
 const MOST_HALVINGS: usize = 16;
 /// Share of a step that is not worth a step of its own at the end of a pass.
 const REST: f64 = 1e-3;
+/// Difference of two tool ends, relative to the part surface, and of their unit axes that is rounding.
+const SAME_PLACE: f64 = 1e-9;
 /// Excess of a move over what is allowed that is rounding.
 const MOVE_SLACK: f64 = 1e-9;
 
@@ -62,6 +64,12 @@ impl Job<'_> {
             }
             let tried = (target - running).abs();
             match self.try_step(&last, parameters, course) {
+                // Along an edge of the guide that is one point the tool stays where it is.
+                Ok((next, _)) if target != running && self.stands_still(&last.pose, &next.pose) => {
+                    step = tried * GROWTH;
+                    last = next;
+                    stations.push(next);
+                }
                 Ok((next, moved)) => {
                     let unproved = sink.milled.unproved;
                     let found = self.freed(&next, course, sink);
@@ -116,6 +124,11 @@ impl Job<'_> {
                 }
             }
         }
+    }
+
+    /// Whether two locations are one but for rounding.
+    fn stands_still(&self, from: &Pose, to: &Pose) -> bool {
+        (to.end - from.end).norm() <= SAME_PLACE * self.size && (to.axis - from.axis).norm() <= SAME_PLACE
     }
 
     /// Places on the straight way between two locations, so that no move is longer than MAXDP. The ball has gone no farther

@@ -69,11 +69,11 @@ impl Job<'_> {
         from: Option<&Station>,
     ) -> Result<Station, StationError> {
         let guide = self.guide.at(parameters, course.direction)?;
-        let forward = guide.along.normalize() * course.sign;
+        let forward = guide.forward * course.sign;
         let (contact, axis) = self.contact_and_axis(parameters, &guide, &forward, course.stock, from)?;
         let curvature = match contact.on_crease {
             true => -1.0 / (EDGE_RADIUS * (self.tool.corner_radius() + course.stock)),
-            false => contact.curvature().along(&guide.along),
+            false => contact.curvature().along(&guide.forward),
         };
         let band = Band::new(self.setting.inside, self.setting.outside);
         let offset = course.stock + band.offset(curvature, self.setting.maximum_step.min(self.size));
@@ -172,7 +172,6 @@ impl Job<'_> {
 
     /// The unit tool axis (SCON/AXIS).
     fn axis(&self, guide: &GuidePoint, normal: &Vec3, forward: &Vec3) -> Result<Vec3, StationError> {
-        let across = guide.across.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
         let axis = match self.command.axis {
             AxisCondition::Fixed(vector) => vector,
             AxisCondition::GuideNormal(sense) => guide.normal * sense.sign(),
@@ -184,7 +183,7 @@ impl Job<'_> {
                 let pitch = normal.cross(&forward.cross(&guide.projection));
                 let pitch = pitch.try_normalize(0.0).ok_or(StationError::NoAxis)?;
                 let roll = normal.cross(&pitch);
-                let sense = if roll.dot(&across) < 0.0 { -1.0 } else { 1.0 };
+                let sense = if roll.dot(&guide.sideways) < 0.0 { -1.0 } else { 1.0 };
                 normal * (alpha.cos() * lead.cos())
                     + pitch * lead.sin()
                     + roll * (sense * alpha.sin() * lead.cos())
@@ -196,8 +195,7 @@ impl Job<'_> {
 
 /// The normal of the guide turned towards the cross direction.
 fn leaning(guide: &GuidePoint, angle: f64) -> Vec3 {
-    let across = guide.across.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
-    guide.normal * angle.cos() + across * angle.sin()
+    guide.normal * angle.cos() + guide.sideways * angle.sin()
 }
 
 /// Radius of an edge on which the ball turns, as a share of that of the ball.

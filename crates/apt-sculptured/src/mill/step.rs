@@ -153,7 +153,7 @@ impl Job<'_> {
             return widest;
         }
         let radius = self.tool.corner_radius() + if offset > 0.0 { offset / sine } else { 0.0 };
-        let across = station.contact.curvature().along(&station.guide.across);
+        let across = station.contact.curvature().along(&station.guide.sideways);
         scallop_interval(radius, height, across).min(widest)
     }
 }
