@@ -184,6 +184,45 @@ fn a_pass_begins_at_a_pole_and_ends_at_one() {
     }
 }
 
+/// PLUS and MINUS tell the natural normal by the parameters of their own patch: of two that join, with parameters that run the other way about
+/// the second, the second has the other word. Two words that tell different sides are an error.
+#[test]
+fn sign_words_of_patches_may_differ_where_their_parameters_turn() {
+    let data = |forward: bool| {
+        let place = |x: usize, y: usize| format!(",(POINT/{x},{y},{})", (3 - x % 3) * (x % 3));
+        let rows = (0..4).flat_map(|row| (0..4).map(move |column| (column, row)));
+        let first: String = rows.clone().map(|(x, y)| place(x, y)).collect();
+        let second: String = rows.map(|(x, y)| place(if forward { 3 + x } else { 6 - x }, y)).collect();
+        [first, second]
+    };
+    let made = |forward: bool, words: [&str; 2]| {
+        let [first, second] = data(forward);
+        let whole = format!("S=SSURF/PATCH,POLYGN,{}{first},{}{second}\n", words[0], words[1]);
+        let pieces = format!(
+            "A=SSURF/PATCH,POLYGN,{}{first}\nB=SSURF/PATCH,POLYGN,{}{second}\nS=SSURF/COMBIN,A,B\n",
+            words[0], words[1]
+        );
+        [whole, pieces].map(|text| report(&format!("PARTNO WORDS\n{text}N=NUMF(S)\nFINI\n")))
+    };
+    for (forward, words) in [
+        (true, ["PLUS", "PLUS"]),
+        (false, ["PLUS", "MINUS"]),
+        (false, ["MINUS", "PLUS"]),
+        (false, ["PLUS", "PLUS"]),
+    ] {
+        for report in made(forward, words) {
+            assert_eq!(numbers(&report), [0; 0], "{words:?}: {}", report["diagnostics"]);
+            assert_near(&report, "N", &[2.0]);
+        }
+    }
+    for report in made(true, ["PLUS", "MINUS"]) {
+        let findings = report["diagnostics"].as_array().unwrap();
+        let error = findings.iter().find(|finding| finding["severity"] == "error").unwrap();
+        let message = error["message"].as_str().unwrap();
+        assert!(message.contains("tell different sides"), "{message}");
+    }
+}
+
 /// The edge of the sphere at a pole is one point, and so is a pass along it.
 #[test]
 fn a_pass_along_a_pole_is_one_location() {

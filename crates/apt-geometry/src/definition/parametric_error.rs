@@ -135,8 +135,8 @@ pub enum ParametricError {
         /// How many.
         patches: usize,
     },
-    /// Patches with different sign words in one surface.
-    #[error("the sign words of the patches differ")]
+    /// Sign words of the patches of one surface that tell different sides of it.
+    #[error("the sign words of the patches tell different sides of the surface")]
     MixedSigns,
     /// Knots that are not those of a B-spline.
     #[error("the knots are not those of {points} points of degree {degree}")]

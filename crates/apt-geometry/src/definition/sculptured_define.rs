@@ -135,9 +135,6 @@ fn combined(
         // A copy keeps its grid.
         [single] => Ok(SculpturedSurface::clone(single)),
         [first, ..] => {
-            if surfaces.iter().any(|surface| surface.side != first.side) {
-                return Err(ParametricError::MixedSigns);
-            }
             let patches: Vec<Patch> =
                 surfaces.iter().flat_map(|surface| surface.patches.iter().copied()).collect();
             let mut breaks = vec![0.0];
@@ -147,7 +144,12 @@ fn combined(
                 breaks.extend(ends.iter().skip(1).map(|end| before + end));
             }
             warnings.extend(apart(surfaces).map(|index| ParametricError::Apart { surface: index + 1 }));
-            Ok(SculpturedSurface::assembled(patches, None, breaks, first.side, Mesh::default()))
+            let whole = SculpturedSurface::assembled(patches, None, breaks, first.side, Mesh::default());
+            if surfaces.iter().all(|surface| surface.side == first.side) {
+                return Ok(whole);
+            }
+            let signs: Vec<f64> = surfaces.iter().flat_map(|surface| surface.senses()).collect();
+            sculptured_patch::one_sided(whole, signs.into_iter())
         }
     }
 }

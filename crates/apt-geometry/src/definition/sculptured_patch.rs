@@ -9,7 +9,7 @@ use crate::{
 /// The surface of the patches in the order of the statement.
 ///
 /// # Errors
-/// No patch, or sign words that differ.
+/// No patch, or sign words that tell different sides of the surface.
 pub(super) fn surface(
     form: PatchForm,
     patches: &[(f64, [Vec3; 16])],
@@ -18,16 +18,28 @@ pub(super) fn surface(
     let Some((side, _)) = patches.first() else {
         return Err(ParametricError::TooFew { least: 1, found: 0 });
     };
-    if patches.iter().any(|(sign, _)| sign != side) {
-        return Err(ParametricError::MixedSigns);
-    }
     if form == PatchForm::PointsOn && patches.len() > 1 {
         warnings.push(ParametricError::LoosePatches { patches: patches.len() });
     }
     let made: Vec<Patch> = patches.iter().map(|(_, data)| patch(form, data)).collect();
     let grid = (made.len() == 1).then_some((1, 1));
     let side = if *side < 0.0 { -1.0 } else { 1.0 };
-    Ok(SculpturedSurface::assembled(made, grid, Vec::new(), side, Mesh::default()))
+    let surface = SculpturedSurface::assembled(made, grid, Vec::new(), side, Mesh::default());
+    one_sided(surface, patches.iter().map(|(sign, _)| *sign))
+}
+
+/// The surface, where the signs of its patches that differ tell one side of it: that of one whose parameters run about it the other way has the
+/// other sign.
+///
+/// # Errors
+/// [`ParametricError::MixedSigns`] where they do not.
+pub(super) fn one_sided(
+    surface: SculpturedSurface,
+    signs: impl Iterator<Item = f64> + Clone,
+) -> Result<SculpturedSurface, ParametricError> {
+    let differ = signs.clone().any(|sign| sign * surface.side < 0.0);
+    let agree = || surface.senses().into_iter().zip(signs).all(|(sense, sign)| sense * sign > 0.0);
+    if differ && !agree() { Err(ParametricError::MixedSigns) } else { Ok(surface) }
 }
 
 fn patch(form: PatchForm, data: &[Vec3; 16]) -> Patch {

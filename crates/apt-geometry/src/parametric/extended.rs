@@ -144,6 +144,13 @@ impl SculpturedSurface {
 
     /// The patches with `∂u × ∂v` to one side, that of the sign word for the first patch of each connected part.
     fn oriented(&self) -> Vec<Patch> {
+        let turn = |(patch, sense): (&Patch, f64)| if sense < 0.0 { patch.swapped() } else { *patch };
+        self.patches.iter().zip(self.senses()).map(turn).collect()
+    }
+
+    /// The sign of the natural normal in `∂u × ∂v` of each patch: that of the sign word for the first patch of each connected part, from which it
+    /// goes over joints to the others.
+    pub fn senses(&self) -> Vec<f64> {
         let mut signs: Vec<Option<f64>> = vec![None; self.patches.len()];
         let mut open = VecDeque::new();
         for first in 0..signs.len() {
@@ -164,10 +171,7 @@ impl SculpturedSurface {
                 }
             }
         }
-        let turn = |(patch, sign): (&Patch, &Option<f64>)| {
-            if sign.is_some_and(|sign| sign < 0.0) { patch.swapped() } else { *patch }
-        };
-        self.patches.iter().zip(&signs).map(turn).collect()
+        signs.into_iter().map(|sign| sign.unwrap_or(self.side)).collect()
     }
 
     /// How far the extensions of a chain of edges go: until they fold or come back to the surface.

@@ -149,7 +149,7 @@ fn reason(error: &Error) -> String {
         }
         Error::NoPlace { miss } => format!("they do not meet, {} is missing", number(*miss)),
         Error::NoDirection => "the geometry has no such direction there".to_owned(),
-        Error::MixedSigns => "its pieces have different sign words".to_owned(),
+        Error::MixedSigns => "the sign words of its pieces tell different sides of it".to_owned(),
         Error::NoPlaceYet => "no INTOF came before that has this parameter".to_owned(),
     }
 }
@@ -169,6 +169,9 @@ fn help(error: &Error) -> Option<String> {
         Error::LoosePatches { .. } => "join surfaces of one patch by COMBIN",
         Error::Knots { degree, points } => {
             return Some(format!("they are {} numbers that do not fall", degree + points + 1));
+        }
+        Error::MixedSigns => {
+            "pieces that meet have different words only where the parameters of one run about it the other way; pieces apart make surfaces of their own"
         }
         Error::NoSuchPart { .. } => "numbers begin at 1; 0 takes the parameters of the whole",
         Error::NoPlaceYet => "POINT/INTOF or VECTOR/INTOF of the curve or surface comes first",
