@@ -152,6 +152,22 @@ fn a_flow_along_a_wide_arc_reaches_its_end() {
     }
 }
 
+/// What FLOW,PARAM measures is the parameter that the language numbers, of which each arc has 1.
+#[test]
+fn a_flow_by_parameter_counts_a_wide_arc_as_one() {
+    for last in ["3,-4,0", "-4,3,0"] {
+        let report = report(&format!(
+            "PARTNO FLOW\nA=SCURV/CURSEG,(POINT/5,0,0),(POINT/0,5,0),(POINT/{last})\n\
+             B=SCURV/SPLINE,(POINT/{last}),(POINT/-9,-4,0)\n\
+             C=SCURV/COMBIN,A,B,FLOW,PARAM,0,2,SEG,LENGTH,0,2\n\
+             P=POINT/INTOF,C,FLOW,.5,1\nQ=POINT/INTOF,C,PARAM,.5,1\nR=POINT/INTOF,C,FLOW,.25,1\nFINI\n"
+        ));
+        let expected: Vec<f64> = last.split(',').map(|x| x.parse().unwrap()).collect();
+        assert_near(&report, "P", &expected);
+        assert_near(&report, "R", &symbol(&report, "Q"));
+    }
+}
+
 #[test]
 fn a_wide_arc_guides_from_its_first_to_its_last_point() {
     let report = report(&format!(

@@ -139,6 +139,12 @@ impl FlowKind {
     }
 }
 
+/// How much of what is measured a unit of it is along an arc of a curve (index): the parameter that the language numbers runs through several
+/// arcs where these are one to the language.
+fn unit(kind: &FlowKind, curve: &SpaceCurve, arc: usize) -> f64 {
+    if *kind == FlowKind::Param { 1.0 / curve.rate(arc) } else { 1.0 }
+}
+
 /// The parameter of an arc where an amount of flow from the low end is reached: Newton's steps, halving where they leave
 /// what is known to hold the place.
 fn place_of(kind: &FlowKind, arc: &CurveArc, [start, end]: [f64; 2], wanted: f64, whole: f64) -> f64 {
@@ -210,7 +216,7 @@ impl Flow {
                 let Some(arc) = curve.arcs.get(index) else { break };
                 let (low, high) = ((from - index as f64).max(0.0), (to - index as f64).min(1.0));
                 if low < high {
-                    sum += range.kind.amount(arc, low, high).abs();
+                    sum += range.kind.amount(arc, low, high).abs() * unit(&range.kind, curve, index);
                 }
             }
         }
@@ -253,11 +259,11 @@ impl Flow {
             let start = index as f64;
             let (low, high) = ((segment.first - start).max(0.0), (segment.last - start).min(1.0));
             let Some(range) = self.range_of(index).filter(|_| low < high) else { continue };
-            let amount = range.kind.amount(arc, low, high).abs();
-            if left <= amount {
-                return Some(start + place_of(&range.kind, arc, [low, high], left, amount));
+            let (amount, unit) = (range.kind.amount(arc, low, high).abs(), unit(&range.kind, curve, index));
+            if left <= amount * unit {
+                return Some(start + place_of(&range.kind, arc, [low, high], left / unit, amount));
             }
-            left -= amount;
+            left -= amount * unit;
         }
         Some(segment.last)
     }
@@ -281,12 +287,12 @@ impl Flow {
         let Some(part) = self.segments.get(segment) else { return 0.0 };
         let even = (curve.numbered(part.last) - curve.numbered(part.first)) * curve.rate(arc);
         let total = self.amount(curve, part.first, part.last);
-        let (Some(range), Some(arc), SegmentMeasure::Length) =
+        let (Some(range), Some(whole), SegmentMeasure::Length) =
             (self.range_of(arc), curve.arcs.get(arc), part.measure)
         else {
             return even;
         };
-        let rate = range.kind.rate(arc, t);
+        let rate = range.kind.rate(whole, t) * unit(&range.kind, curve, arc);
         if total > 0.0 && rate > 0.0 { total / rate } else { even }
     }
 
