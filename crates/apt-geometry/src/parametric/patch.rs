@@ -213,13 +213,25 @@ impl Patch {
 
     /// The parts below and above a value of u.
     pub fn cut_u(&self, u: f64) -> [Patch; 2] {
-        self.swapped().cut_v(u).map(|part| part.swapped())
+        let mut parts = [*self; 2];
+        let [first, second] = &mut parts;
+        for j in 0..4 {
+            let [low, high] = basis::cut(&[0, 1, 2, 3].map(|i| self.control[i][j]), u);
+            for i in 0..4 {
+                (first.control[i][j], second.control[i][j]) = (low[i], high[i]);
+            }
+        }
+        parts
     }
 
     /// The parts below and above a value of v.
     pub fn cut_v(&self, v: f64) -> [Patch; 2] {
-        let rows = self.control.map(|row| basis::cut(&row, v));
-        [Patch { control: rows.map(|row| row[0]) }, Patch { control: rows.map(|row| row[1]) }]
+        let mut parts = [*self; 2];
+        let [first, second] = &mut parts;
+        for (i, row) in self.control.iter().enumerate() {
+            [first.control[i], second.control[i]] = basis::cut(row, v);
+        }
+        parts
     }
 
     /// The patch with u and v exchanged, which turns its normal over.
@@ -235,7 +247,13 @@ impl Patch {
 
     /// The control points as places.
     pub fn points(&self) -> [[Vec3; 4]; 4] {
-        self.control.map(|row| row.map(|point| basis::project(&point)))
+        let mut points = [[Vec3::zeros(); 4]; 4];
+        for (row, control) in points.iter_mut().zip(&self.control) {
+            for (point, value) in row.iter_mut().zip(control) {
+                *point = basis::project(value);
+            }
+        }
+        points
     }
 
     /// Whether all weights are the same, so that the patch is a polynomial.

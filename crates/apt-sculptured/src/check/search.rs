@@ -179,14 +179,12 @@ impl Search<'_> {
                 depth: depth.value,
             });
         }
-        let steps = points.map(|row| row.map(|point| depth.ascent.dot(&(point - middle))));
+        let steps = rises(&points, &middle, &depth.ascent, 0.0);
         cell.along_u = varies_along_u(&steps);
         let mut bound = depth.value + greatest(&steps);
         if bound > self.limit() {
             for face in self.tool.depths_behind_faces(self.pose, &middle) {
-                let beyond = points.map(|row| {
-                    row.map(|point| face.value - depth.value + face.ascent.dot(&(point - middle)))
-                });
+                let beyond = rises(&points, &middle, &face.ascent, face.value - depth.value);
                 bound = bound.min(depth.value + ridge::greatest_of_lesser(&steps, &beyond));
             }
         }
@@ -204,6 +202,17 @@ impl Search<'_> {
             self.add_cell(Cell { low, size, control, ..*cell });
         }
     }
+}
+
+/// How much a linear function with a slope rises from the middle to each control point, from `base` on.
+fn rises(points: &[[Vec3; 4]; 4], middle: &Vec3, slope: &Vec3, base: f64) -> [[f64; 4]; 4] {
+    let mut found = [[0.0; 4]; 4];
+    for (row, points) in found.iter_mut().zip(points) {
+        for (rise, point) in row.iter_mut().zip(points) {
+            *rise = base + slope.dot(&(point - middle));
+        }
+    }
+    found
 }
 
 fn greatest(steps: &[[f64; 4]; 4]) -> f64 {

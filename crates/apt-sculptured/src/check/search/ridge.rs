@@ -1,17 +1,19 @@
 //! The bound where two faces of the tool are equally near: there the depth has a ridge, which one plane of support bounds
 //! only as well as the cell is small, two of them as well as its square.
 
-/// Most halvings of the share of the second function: beyond that the share does not change.
-const MOST_HALVINGS: usize = 30;
+/// Most mixtures that are looked at: each is where the lines of the best two on either side meet, and few lead to the least.
+const MOST_MIXTURES: usize = 30;
+/// How much lower the least may be, relative to the values, where no more mixtures are looked at.
+const NO_LOWER: f64 = 1e-12;
 
 /// The greatest value over a hull that the lesser of two linear functions reaches; they are given by their values at the
 /// control points. By duality the least, over all mixtures of the two, of the mixture's greatest value.
 pub(super) fn greatest_of_lesser(first: &[[f64; 4]; 4], second: &[[f64; 4]; 4]) -> f64 {
-    let pairs = || first.iter().flatten().zip(second.iter().flatten());
+    let (first, second) = (first.as_flattened(), second.as_flattened());
     // The greatest value of a mixture, and how that control point's value changes with the share.
     let mixture = |share: f64| {
         let mut most = (f64::NEG_INFINITY, 0.0);
-        for (a, b) in pairs() {
+        for (a, b) in first.iter().zip(second) {
             let value = a + share * (b - a);
             if value > most.0 {
                 most = (value, b - a);
@@ -20,22 +22,25 @@ pub(super) fn greatest_of_lesser(first: &[[f64; 4]; 4], second: &[[f64; 4]; 4]) 
         most
     };
     let (mut low, mut high) = (0.0, 1.0);
-    let (at_low, at_high) = (mixture(low), mixture(high));
+    let (mut at_low, mut at_high) = (mixture(low), mixture(high));
     let mut best = at_low.0.min(at_high.0);
     if at_low.1 >= 0.0 || at_high.1 <= 0.0 {
         return best;
     }
-    for _ in 0..MOST_HALVINGS {
-        let share = 0.5 * (low + high);
-        let (value, slope) = mixture(share);
-        best = best.min(value);
-        if slope == 0.0 {
+    // The greatest value is convex in the share: no less than both lines, and least where they meet if it is no greater there.
+    for _ in 0..MOST_MIXTURES {
+        let (from_low, from_high) = (at_low.0 - at_low.1 * low, at_high.0 - at_high.1 * high);
+        let share = ((from_low - from_high) / (at_high.1 - at_low.1)).clamp(low, high);
+        let least = from_low + at_low.1 * share;
+        let here = mixture(share);
+        best = best.min(here.0);
+        if here.1 == 0.0 || here.0 - least <= NO_LOWER * (at_low.0.abs() + at_high.0.abs()) {
             break;
         }
-        if slope < 0.0 {
-            low = share;
+        if here.1 < 0.0 {
+            (low, at_low) = (share, here);
         } else {
-            high = share;
+            (high, at_high) = (share, here);
         }
     }
     best
