@@ -314,7 +314,7 @@ fn words_of_a_finding_say_what_the_geometry_is() {
             [
                 "APT0641",
                 "never met TO: the tool is there at (24.4880613",
-                "begins so or leaves",
+                "begins so, leaves the surface",
                 "PAST here ends",
             ],
         ),

@@ -342,7 +342,7 @@ fn path(failure: &Failure) -> Text {
             "APT0641",
             if *is_there {
                 format!(
-                    "the surface to stop at is never met {}: the tool is there at {}, but begins so or leaves the surface",
+                    "the surface to stop at is never met {}: the tool is there at {}, but begins so, leaves the surface or gets around its end",
                     relation(*wanted),
                     place(at)
                 )
