@@ -66,6 +66,9 @@ pub(super) struct Touch {
     pub(super) meridian: Meridian,
 }
 
+/// A circle of the tool, with the radius of the ball about it.
+type Circle = (Meridian, f64);
+
 /// The clearance, if one circle of the tool is in contact and that is proven.
 pub(super) fn at(
     quadric: &PrincipalQuadric,
@@ -83,84 +86,135 @@ pub(super) fn at(
         axis: quadric.turned_in(&tool.axis),
         across: [quadric.turned_in(&first), quadric.turned_in(&tool.axis.cross(&first))],
     };
-    let size = tool.profile.reach();
-    let (corner, bulge) = match tool.profile.corner() {
-        // Beyond the axis the centres of the corner are no places that the tool is about.
-        Some((center, radius)) if center[0] < 0.0 => (None, Part::arc(tool.profile, center, radius)),
-        corner => (corner, None),
-    };
-    let edges = tool.profile.edges().map(|p| (p, 0.0));
-    let [lower, upper, top] = tool.profile.edges();
-    let convex = shape == Shape::Convex;
-    let error = if convex { PLANE_SLACK } else { SLACK } * size;
-    let proven_by = |touch: &Touch, ball: f64, stretches: usize| {
+    let mut search = Search::of(&place, shape == Shape::Convex);
+    search
+        .on_bulge()
+        .or_else(|| search.on_expected_circles())
+        .or_else(|| search.on_nearest())
+        .or_else(|| search.on_straight_pieces())
+}
+
+/// The parts of a tool, looked at for the one in contact.
+struct Search<'a> {
+    place: &'a Place<'a>,
+    /// Whether the surface is the boundary of a convex solid that the tool is outside of, so that a tangent plane proves a contact.
+    is_convex: bool,
+    /// By how much a proof may miss the contact.
+    error: f64,
+    /// The circle of the corner, about which its balls are; or its arc, where that bulges.
+    corner: Option<Circle>,
+    bulge: Option<Part>,
+    /// The circle that is expected to touch, once it has been asked for.
+    expected: Option<Circle>,
+    /// The straight pieces, from one edge to the next.
+    pieces: [[Meridian; 2]; 2],
+    /// The nearest place of the tool that is not shown to be the contact, with the ball about it.
+    nearest: Option<(Touch, f64)>,
+}
+
+impl<'a> Search<'a> {
+    fn of(place: &'a Place<'a>, is_convex: bool) -> Self {
+        let profile = place.tool.profile;
+        let (corner, bulge) = match profile.corner() {
+            // Beyond the axis the centres of the corner are no places that the tool is about.
+            Some((center, radius)) if center[0] < 0.0 => (None, Part::arc(profile, center, radius)),
+            corner => (corner, None),
+        };
+        let [lower, upper, top] = profile.edges();
+        let error = if is_convex { PLANE_SLACK } else { SLACK } * profile.reach();
+        let pieces = [[[0.0; 2], lower], [upper, top]];
+        Self { place, is_convex, error, corner, bulge, expected: None, pieces, nearest: None }
+    }
+
+    /// The clearance by a contact, if no point of the tool is shown to be nearer, by a tangent plane or so many stretches of the tool.
+    fn proven(&self, touch: &Touch, ball: f64, stretches: usize) -> Option<Reading> {
+        let Self { place, error, .. } = *self;
         let value = touch.distance - ball;
-        let holds = if convex {
+        let holds = if self.is_convex {
             place.is_beyond_plane(touch, value - error)
         } else {
             place.keeps(value - error, touch, stretches)
         };
-        holds.then(|| Reading::new(value, quadric.turned_out(&touch.normal), error))
-    };
-    let proven = |touch: &Touch, ball: f64| proven_by(touch, ball, STRETCHES);
-    // The tool end is in contact only where the bottom rises from it.
-    let tip = (lower[1] > 0.0).then_some(([0.0; 2], 0.0));
-    // The nearest of those circles that are not shown to be the nearest at once, with its distance.
-    let mut nearest: Option<(f64, Touch, f64)> = None;
-    if let Some(touch) = bulge.and_then(|bulge| place.touch_piece(bulge)) {
-        if let Some(reading) = proven(&touch, 0.0) {
-            return Some(reading);
-        }
-        nearest = Some((touch.distance, touch, 0.0));
+        holds.then(|| Reading::new(value, place.quadric.turned_out(&touch.normal), error))
     }
-    let pieces = [([0.0; 2], lower), (upper, top)];
-    let expected = place.expected();
-    let [first, second, third] = edges;
-    let all = [corner, tip, Some(first), Some(second), Some(third)];
-    let others = all.iter().flatten().filter(|circle| Some(**circle) != expected);
-    let mut done: Option<Meridian> = None;
-    for &(p, ball) in expected.iter().filter(|circle| all.contains(&Some(**circle))).chain(others) {
-        if done == Some(p) {
-            continue;
+
+    /// The arc of a corner that bulges.
+    fn on_bulge(&mut self) -> Option<Reading> {
+        let touch = self.place.touch_piece(self.bulge?)?;
+        let reading = self.proven(&touch, 0.0, STRETCHES);
+        self.nearest = Some((touch, 0.0));
+        reading
+    }
+
+    /// The circles of the corner, the tool end and the edges, the expected one first.
+    fn on_expected_circles(&mut self) -> Option<Reading> {
+        let [lower, ..] = self.place.tool.profile.edges();
+        self.expected = self.place.expected();
+        let expected = self.expected;
+        // The tool end is in contact only where the bottom rises from it.
+        let tip = (lower[1] > 0.0).then_some(([0.0; 2], 0.0));
+        let [first, second, third] = self.place.tool.profile.edges().map(|p| Some((p, 0.0)));
+        let all = [self.corner, tip, first, second, third];
+        let others = all.iter().flatten().filter(|circle| Some(**circle) != expected);
+        let mut done: Option<Meridian> = None;
+        for &circle in expected.iter().filter(|circle| all.contains(&Some(**circle))).chain(others) {
+            if done == Some(circle.0) {
+                continue;
+            }
+            done = Some(circle.0);
+            if let Some(reading) = self.on_circle(circle) {
+                return Some(reading);
+            }
         }
-        done = Some(p);
-        let Some(touch) = place.touch(p, ball) else { continue };
+        None
+    }
+
+    /// One circle, if it is worth a trial: else it may be the nearest.
+    fn on_circle(&mut self, circle: Circle) -> Option<Reading> {
+        let (p, ball) = circle;
+        let touch = self.place.touch(p, ball)?;
         // A tangent plane is quickly tried. A place from which the tool goes on towards the surface is not the nearest.
-        let may_be_nearest = convex || ball > 0.0 || place.is_foremost(&touch);
+        let may_be_nearest = self.is_convex || ball > 0.0 || self.place.is_foremost(&touch);
         // The corner is the nearest so mostly that it is worth the longer trial, and so is what is expected.
-        let is_expected = Some((p, ball)) == expected;
+        let is_expected = Some(circle) == self.expected;
         if may_be_nearest
-            && (convex || is_expected || Some((p, ball)) == corner)
+            && (self.is_convex || is_expected || Some(circle) == self.corner)
             && let Some(reading) =
-                proven_by(&touch, ball, if is_expected { FIRST_STRETCHES } else { STRETCHES })
+                self.proven(&touch, ball, if is_expected { FIRST_STRETCHES } else { STRETCHES })
         {
             return Some(reading);
         }
         // Where the tangent plane there cuts the tool, a straight piece beside it touches.
-        if convex && is_expected {
-            let beside = pieces.iter().filter(|(a, b)| a != b && (*a == p || *b == p));
-            let mut straight = beside.filter_map(|(a, b)| place.touch_straight([*a, *b], &-touch.normal));
-            if let Some(reading) = straight.find_map(|touch| proven(&touch, 0.0)) {
+        if self.is_convex && is_expected {
+            let beside = self.pieces.iter().filter(|[a, b]| a != b && (*a == p || *b == p));
+            let mut straight = beside.filter_map(|ends| self.place.touch_straight(*ends, &-touch.normal));
+            if let Some(reading) = straight.find_map(|touch| self.proven(&touch, 0.0, STRETCHES)) {
                 return Some(reading);
             }
         }
         let distance = touch.distance - ball;
-        if may_be_nearest && nearest.is_none_or(|near| distance < near.0) {
-            nearest = Some((distance, touch, ball));
+        if may_be_nearest && self.nearest.is_none_or(|(near, about)| distance < near.distance - about) {
+            self.nearest = Some((touch, ball));
         }
+        None
     }
-    let nearest = nearest.map(|(_, touch, ball)| (touch, ball));
-    if let Some((touch, ball)) = nearest.filter(|near| !convex && (near.1 <= 0.0 || expected == corner))
-        && let Some(reading) = proven(&touch, ball)
-    {
-        return Some(reading);
+
+    /// The nearest of the places that were looked at, which has not been tried as long as it may be.
+    fn on_nearest(&self) -> Option<Reading> {
+        let is_untried = |ball: f64| !self.is_convex && (ball <= 0.0 || self.expected == self.corner);
+        let (touch, ball) = self.nearest.filter(|(_, ball)| is_untried(*ball))?;
+        self.proven(&touch, ball, STRETCHES)
     }
-    pieces.into_iter().filter(|(a, b)| a != b).find_map(|(a, b)| {
-        let straight =
-            nearest.filter(|_| convex).and_then(|near| place.touch_straight([a, b], &-near.0.normal));
-        let shown = straight.and_then(|touch| proven(&touch, 0.0));
-        shown.or_else(|| proven(&place.touch_piece(Part::Line([a, b]))?, 0.0))
-    })
+
+    /// The straight pieces.
+    fn on_straight_pieces(&self) -> Option<Reading> {
+        self.pieces.into_iter().filter(|[a, b]| a != b).find_map(|ends| {
+            let near = self.nearest.filter(|_| self.is_convex);
+            let straight = near.and_then(|(near, _)| self.place.touch_straight(ends, &-near.normal));
+            let shown = straight.and_then(|touch| self.proven(&touch, 0.0, STRETCHES));
+            shown.or_else(|| self.proven(&self.place.touch_piece(Part::Line(ends))?, 0.0, STRETCHES))
+        })
+    }
 }
 
 impl Place<'_> {
@@ -171,7 +225,7 @@ impl Place<'_> {
 
     /// The circle of the tool, with the ball about it, that is expected to touch: the one that goes farthest towards the surface by the
     /// normal of that beside it.
-    fn expected(&self) -> Option<(Meridian, f64)> {
+    fn expected(&self) -> Option<Circle> {
         let mut at = self.tip + self.axis * self.tool.profile.edges()[0][1];
         let mut found = None;
         for _ in 0..GLANCES {
