@@ -74,55 +74,29 @@ pub(super) fn prepare<'a>(
     let position = required_position(state)?;
     let (tool, tip) = (Tool::awaited(cutter, position.axis, patience), position.tip);
     let size = position::size(&tool, &tip);
-    let part_on = state.part_side == PartSide::On;
-    let drive_on = state.drive_side == DriveSide::On;
-    let relation = |on: bool| if on { Relation::On } else { Relation::To };
-    let mut part = Working::new(state, RoleName::Part, &state.part, relation(part_on), part_on, patience)?;
-    let mut drive = Working::new(state, RoleName::Drive, drive, relation(drive_on), drive_on, patience)?;
-    for role in [&part, &drive] {
-        has_band(role)?;
-    }
+    let [mut part, mut drive] = with_bands(state, drive, patience)?;
     let part_contact = start_check(&tool, &mut part, (&tip, state.side_of_part), size)?;
     // A direction that is not defined is the plainer mistake: it is named before a drive surface out of reach.
     let checked = start_check(&tool, &mut drive, (&tip, None), size);
-    let mut drive_contact =
+    let drive_contact =
         checked.as_ref().map_or_else(|_| drive.gauge.contact(&tool, &tip), |contact| *contact);
     let wanted = turned(state, &tip, turn, warnings)?;
-    let mut part_followed = part_contact;
-    let mut tangent = match line_of_motion(&part_contact, &drive_contact, &wanted, &tip) {
-        Err(failure) => {
-            let contacts = [part_contact, drive_contact];
-            let place = Corner { tool: &tool, tip, roles: [&part, &drive], contacts, size };
-            let own = || own_line(state, &tool, (&part, &drive), (&tip, &wanted));
-            match place.decided(&wanted, failure) {
-                Ok((along, followed)) => {
-                    [part_followed, drive_contact] = followed;
-                    along
-                }
-                Err(failure) => own().ok_or(failure)?,
-            }
-        }
-        Ok(tangent) => tangent,
-    };
+    let contacts = [part_contact, drive_contact];
+    let corner = Corner { tool: &tool, tip, roles: [&part, &drive], contacts, size };
+    let (mut tangent, mut followed) = corner.line(state, &wanted)?;
     checked?;
-    // Where the tool is in tolerance on both sides, TLLFT and TLRGT tell which.
-    if misplaced(state.drive_side, &tool, &drive_contact.gradient, &tangent).is_some()
-        && let Some((other, contact)) = on_the_other_side(&tool, &drive, &tip, size)
-        && let Ok(along) = line_of_motion(&part_contact, &contact, &wanted, &tip)
-        && misplaced(state.drive_side, &tool, &contact.gradient, &along).is_none()
-    {
-        (drive, drive_contact, tangent) = (other, contact, along);
-        part_followed = part_contact;
+    if let Some((other, contact, along)) = corner.on_the_told_side(state, (&tangent, &followed[1]), &wanted) {
+        (drive, tangent, followed) = (other, along, [part_contact, contact]);
     }
-    let place =
-        Corner { tool: &tool, tip, roles: [&part, &drive], contacts: [part_contact, drive_contact], size };
-    if let Some((along, followed)) = place.way_out(&tangent, &wanted) {
-        (tangent, [part_followed, drive_contact]) = (along, followed);
+    let contacts = [part_contact, followed[1]];
+    let corner = Corner { tool: &tool, tip, roles: [&part, &drive], contacts, size };
+    if let Some(out) = corner.way_out(&tangent, &wanted) {
+        (tangent, followed) = out;
     }
     let attitude = attitude(state, &tool, (&part, &drive), &tip, &wanted)?;
     let standing = tangent;
     tangent = line_of_turning(&attitude, [&part, &drive], &tip, (&standing, &wanted)).unwrap_or(standing);
-    let drive_side = judge_side(state, &tool, &drive_contact, &tangent, warnings);
+    let drive_side = judge_side(state, &tool, &followed[1], &tangent, warnings);
     let checks = working_checks(state, checks, patience)?;
     warn_of_surface_twice([&part, &drive].into_iter().chain(&checks), warnings);
     if attitude.turns() {
@@ -137,13 +111,30 @@ pub(super) fn prepare<'a>(
         drive,
         checks,
         tangent,
-        followed: [part_followed.gradient, drive_contact.gradient],
+        followed: followed.map(|contact| contact.gradient),
         standing,
         wanted,
         size,
         drive_side,
         aim: None,
     })
+}
+
+/// Part and drive surface, with their bands.
+fn with_bands(
+    state: &State,
+    drive: &NamedSurface,
+    patience: Patience<'_>,
+) -> Result<[Working; 2], MotionFailure> {
+    let part_on = state.part_side == PartSide::On;
+    let drive_on = state.drive_side == DriveSide::On;
+    let relation = |on: bool| if on { Relation::On } else { Relation::To };
+    let part = Working::new(state, RoleName::Part, &state.part, relation(part_on), part_on, patience)?;
+    let drive = Working::new(state, RoleName::Drive, drive, relation(drive_on), drive_on, patience)?;
+    for role in [&part, &drive] {
+        has_band(role)?;
+    }
+    Ok([part, drive])
 }
 
 /// Without a tolerance no cut vector is in it.
@@ -348,6 +339,36 @@ struct Corner<'a> {
 }
 
 impl Corner<'_> {
+    /// The line of motion in the sense asked for, and the contacts with part and drive surface along which it leads.
+    fn line(&self, state: &State, wanted: &Vec3) -> Result<(Vec3, [Contact; 2]), MotionFailure> {
+        let [part, drive] = &self.contacts;
+        let failure = match line_of_motion(part, drive, wanted, &self.tip) {
+            Ok(along) => return Ok((along, self.contacts)),
+            Err(failure) => failure,
+        };
+        self.decided(wanted, failure).or_else(|failure| {
+            let [part, drive] = self.roles;
+            let along = own_line(state, self.tool, (part, drive), (&self.tip, wanted)).ok_or(failure)?;
+            Ok((along, self.contacts))
+        })
+    }
+
+    /// Where a line of motion has the tool on the side of the drive surface that TLLFT or TLRGT does not tell, and it is in tolerance on the other one too:
+    /// the surface with the tool there, the contact with it, and the line of motion.
+    fn on_the_told_side(
+        &self,
+        state: &State,
+        (tangent, contact): (&Vec3, &Contact),
+        wanted: &Vec3,
+    ) -> Option<(Working, Contact, Vec3)> {
+        let Self { tool, tip, roles: [_, drive], contacts: [part, _], size } = *self;
+        misplaced(state.drive_side, tool, &contact.gradient, tangent)?;
+        let (other, contact) = on_the_other_side(tool, drive, &tip, size)?;
+        let along = line_of_motion(&part, &contact, wanted, &tip).ok()?;
+        let is_told = misplaced(state.drive_side, tool, &contact.gradient, &along).is_none();
+        is_told.then_some((other, contact, along))
+    }
+
     /// Where the direction asked for is square to the line of motion that is measured: the one along another contact, which it decides.
     fn decided(&self, wanted: &Vec3, failure: MotionFailure) -> Result<(Vec3, [Contact; 2]), MotionFailure> {
         let MotionFailure::DirectionUndetermined { tangent, .. } = failure else { return Err(failure) };
