@@ -18,6 +18,8 @@ mod tangency;
 #[cfg(test)]
 pub(crate) use self::fewer::TRIED;
 
+use std::ops::ControlFlow;
+
 use apt_geometry::{Vec3, motion::CheckSurface, patience::Patience};
 
 pub(crate) use self::surface_end::end_from_behind;
@@ -243,55 +245,16 @@ impl<'a> March<'a> {
             }
             let Some(event) = event else {
                 self.before = Some(before);
-                self.points.push(next.tip);
-                self.count_revolution(&start, &here, &next)?;
-                self.look_ahead((&here, &next), patience)?;
-                self.look_for_end(&here, &next, patience)?;
-                self.count_creeping(&here, &next, cap)?;
+                self.go_on(&start, (&here, &next), cap, patience)?;
                 here = next;
                 cap = self.state.maximum_step;
                 continue;
             };
-            if event.is_shallow && !self.prepared.attitude.turns() {
-                return self.finished_on_vectors(&start, &event);
-            }
-            // An end at rest in the band may lie farther across the path than a last vector may be long: then where the
-            // path is.
-            let held = (finals >= PATIENT_FINALS).then_some([here.part.clearance, here.drive.clearance]);
-            let begin = self.points.is_empty().then_some(&here.tip);
-            let towards = finish::Towards { event: &event, tangent: &next.tangent, held, begin };
-            let sweep = here.sweep(self.prepared, &next);
-            let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
-            let is_passed_by = self.is_passed_by(&here, &end)?;
-            // What turns the first vector is that the tool comes to its law, which takes a way; a later one is made shorter.
-            if self.points.is_empty() && (is_passed_by || self.is_led_back(&here, &end)) {
-                return Err(without_last(here.tip, finals + 1));
-            }
-            if !is_passed_by && self.accept(&here, &end.tip)? {
-                self.points.push(end.tip);
-                return self.finished(&start, &end);
-            }
-            if self.bend_towards(&here, &next, &end.tip)? {
-                self.points.push(end.tip);
-                return self.finished(&start, &end);
+            match self.end_at(&event, &start, (&mut here, &next), finals)? {
+                ControlFlow::Break(path) => return Ok(path),
+                ControlFlow::Continue(length) => cap = length,
             }
             finals += 1;
-            if finals > MAX_FINALS {
-                return Err(without_last(here.tip, MAX_FINALS));
-            }
-            if let Some(longer) = self.step_back(&mut here, &end.tip) {
-                cap = SHARE_BEFORE_STOP * longer;
-                continue;
-            }
-            cap = SHARE_BEFORE_STOP * (end.tip - here.tip).norm().min((next.tip - here.tip).norm());
-            if cap <= NO_WAY * self.prepared.size {
-                // The stop is where the last vertex already is.
-                if self.points.pop().is_none() {
-                    self.points.clear();
-                }
-                self.points.push(end.tip);
-                return Ok(self.path(&end));
-            }
         }
         self.judge_outlook(&here, patience)?;
         Err(MotionFailure::TooManyPoints {
@@ -300,6 +263,65 @@ impl<'a> March<'a> {
             remaining: self.watcher.remaining(&here.tip, &here.axis).min(self.tangency.nearest.abs()),
             at: here.tip,
         })
+    }
+
+    /// Keeps a vector on which nothing stops the motion, and looks whether the path leads on from there.
+    fn go_on(
+        &mut self,
+        start: &Vertex,
+        (here, next): (&Vertex, &Vertex),
+        cap: f64,
+        patience: Patience<'_>,
+    ) -> Result<(), MotionFailure> {
+        self.points.push(next.tip);
+        self.count_revolution(start, here, next)?;
+        self.look_ahead((here, next), patience)?;
+        self.look_for_end(here, next, patience)?;
+        self.count_creeping(here, next, cap)
+    }
+
+    /// Ends the motion where it is stopped on a vector that leads on, after so many vectors that were too long for that. The vertex that this one
+    /// comes from may be taken back. Either the path, or how long the vector that is to be made in place of that one may be.
+    fn end_at(
+        &mut self,
+        event: &Event,
+        start: &Vertex,
+        (here, next): (&mut Vertex, &Vertex),
+        finals: u32,
+    ) -> Result<ControlFlow<Path, f64>, MotionFailure> {
+        if event.is_shallow && !self.prepared.attitude.turns() {
+            return self.finished_on_vectors(start, event).map(ControlFlow::Break);
+        }
+        // An end at rest in the band may lie farther across the path than a last vector may be long: then where the
+        // path is.
+        let held = (finals >= PATIENT_FINALS).then_some([here.part.clearance, here.drive.clearance]);
+        let begin = self.points.is_empty().then_some(&here.tip);
+        let towards = finish::Towards { event, tangent: &next.tangent, held, begin };
+        let sweep = here.sweep(self.prepared, next);
+        let end = finish::end(self.prepared, self.checks, (&self.watcher, &sweep), &towards)?;
+        let is_passed_by = self.is_passed_by(here, &end)?;
+        // What turns the first vector is that the tool comes to its law, which takes a way; a later one is made shorter.
+        if self.points.is_empty() && (is_passed_by || self.is_led_back(here, &end)) {
+            return Err(without_last(here.tip, finals + 1));
+        }
+        if !is_passed_by && self.accept(here, &end.tip)? || self.bend_towards(here, next, &end.tip)? {
+            self.points.push(end.tip);
+            return self.finished(start, &end).map(ControlFlow::Break);
+        }
+        if finals >= MAX_FINALS {
+            return Err(without_last(here.tip, MAX_FINALS));
+        }
+        if let Some(longer) = self.step_back(here, &end.tip) {
+            return Ok(ControlFlow::Continue(SHARE_BEFORE_STOP * longer));
+        }
+        let cap = SHARE_BEFORE_STOP * (end.tip - here.tip).norm().min((next.tip - here.tip).norm());
+        if cap <= NO_WAY * self.prepared.size {
+            // The stop is where the last vertex already is.
+            self.points.pop();
+            self.points.push(end.tip);
+            return Ok(ControlFlow::Break(self.path(&end)));
+        }
+        Ok(ControlFlow::Continue(cap))
     }
 
     /// From time to time, beyond where a check surface was seen ahead: ends a motion that cannot meet any.
