@@ -67,11 +67,30 @@ enum Leg {
     Over((Vertex, SurfaceEnd)),
 }
 
+/// Nothing could be told.
+const UNTOLD: Outlook = Outlook::Open { way: 0.0 };
+
+/// What comes of a step of the look ahead.
+enum Step {
+    /// This is what lies ahead.
+    Told(Outlook),
+    /// The path leads on to a place, over this way and turning by so much.
+    Leads(Vertex, [f64; 2]),
+    /// A check surface is too near to tell whether the path meets it: shorter steps do.
+    TooLong,
+}
+
 /// A path being looked along.
 struct Scout<'a> {
     prepared: &'a Prepared<'a>,
     watcher: Watcher<'a>,
     tangency: tangency::Watch<'a>,
+    /// Where the path is entered.
+    start: Vertex,
+    /// Positions that count and had been met there.
+    met_before: usize,
+    /// Whether a tangency stops the motion.
+    may_be_tangent: bool,
     nearest: (f64, Vec3, usize),
     /// Distance travelled and angle turned at every step so far.
     log: Vec<[f64; 2]>,
@@ -87,86 +106,107 @@ pub(super) fn ahead(
     least: f64,
     patience: Patience<'_>,
 ) -> Result<Outlook, MotionFailure> {
-    let nearest = (f64::INFINITY, from.tip, 0);
+    // In a corner the middle of the bands may be on another leg, along which the way ahead is not that of the path.
+    let settled = Vertex::settled(prepared, &from.tip, &from.tangent);
+    let Some(start) = settled.filter(|start| start.tangent.dot(&from.tangent) >= SAME_LEG) else {
+        return Ok(UNTOLD);
+    };
     let mut scout = Scout {
         prepared,
         watcher: watcher.thorough(),
         tangency: tangency.clone(),
-        nearest,
+        start,
+        met_before: 0,
+        may_be_tangent: checks.iter().any(|check| is_tangent(check.relation)),
+        nearest: (f64::INFINITY, from.tip, 0),
         log: vec![[0.0; 2]],
-    };
-    let untold = Outlook::Open { way: 0.0 };
-    // In a corner the middle of the bands may be on another leg, along which the way ahead is not that of the path.
-    let settled = Vertex::settled(prepared, &from.tip, &from.tangent);
-    let Some(start) = settled.filter(|start| start.tangent.dot(&from.tangent) >= SAME_LEG) else {
-        return Ok(untold);
     };
     // From elsewhere in the bands to their middle the tool may already come to a position.
     let aside = from.sweep(prepared, &start);
     if aside.length > 0.0 && scout.watcher.scan(&aside).is_some() {
         return Ok(Outlook::Open { way: aside.length });
     }
-    let met = scout.met();
-    let least = least.clamp(REACH * prepared.size, LONGEST * prepared.size);
-    let (mut here, mut step) = (start, FIRST * prepared.size);
-    let tangent = checks.iter().any(|check| is_tangent(check.relation));
-    for _ in 0..MAX_STEPS {
-        if patience.is_over() {
-            return Err(MotionFailure::Cancelled);
-        }
-        let (to, turn, end) = match scout.leg(&here, &mut step) {
-            // Where the tool is in its surface a little there is no place beside the end of that.
-            None => return Ok(SurfaceEnd::just_ahead(prepared, &here).map_or(untold, Outlook::Ends)),
-            Some(Leg::Along(to, turn)) => (to, turn, None),
-            Some(Leg::Over(beyond)) => {
-                let (to, end) = scout.end_between(&here, beyond);
-                (to, TURN[1], Some(end))
-            }
-        };
-        let sweep = here.sweep(prepared, &to);
-        let sag = sweep.length * turn / 8.0;
-        // A step that comes so near is shortened, however much nearer it comes.
-        let near = if tangent { f64::NEG_INFINITY } else { MARGIN * sag };
-        scout.watcher.near_enough = near;
-        scout.watcher.nearest.0 = f64::INFINITY;
-        let before = scout.watcher.clone();
-        if scout.watcher.scan(&sweep).is_some() || scout.tangency.scan(&here, &to)?.is_some() {
-            return Ok(Outlook::Open { way: scout.travelled() + sweep.length });
-        }
-        let approach = scout.watcher.nearest;
-        if approach.0 <= near {
-            step = 0.25 * sweep.length;
-            scout.watcher = before;
-            if step <= LEAST * prepared.size {
-                return Ok(untold);
-            }
-            continue;
-        }
-        if approach.0 < scout.nearest.0 {
-            scout.nearest = approach;
-        }
-        if let Some(end) = end {
-            return Ok(Outlook::Ends(end));
-        }
-        scout.note(sweep.length, turn);
-        let closed = scout.log.len() > 3 && scout.passes(&start, &here, &to);
-        let course = if closed { Some(scout.turn()) } else { scout.left_behind(least) };
-        if let Some(course) = course {
-            // On a closed path those that were met come again.
-            return Ok(if closed && scout.met() > met {
-                untold
-            } else {
-                let parallel = (scout.tangency.nearest, scout.tangency.check);
-                Outlook::Nothing { course, nearest: scout.nearest, met: scout.met(), parallel }
-            });
-        }
-        step = sweep.length * (TURN[0] / turn.max(f64::MIN_POSITIVE)).min(GROWTH);
-        here = to;
-    }
-    Ok(untold)
+    scout.met_before = scout.met();
+    scout.look(least.clamp(REACH * prepared.size, LONGEST * prepared.size), patience)
 }
 
 impl Scout<'_> {
+    /// Step by step, as far as it takes to tell what lies ahead.
+    fn look(&mut self, least: f64, patience: Patience<'_>) -> Result<Outlook, MotionFailure> {
+        let (mut here, mut step) = (self.start, FIRST * self.prepared.size);
+        for _ in 0..MAX_STEPS {
+            if patience.is_over() {
+                return Err(MotionFailure::Cancelled);
+            }
+            match self.step(&here, &mut step)? {
+                Step::Told(outlook) => return Ok(outlook),
+                Step::TooLong if step <= LEAST * self.prepared.size => return Ok(UNTOLD),
+                Step::TooLong => {}
+                Step::Leads(to, [length, turn]) => {
+                    if let Some(outlook) = self.at_last(&here, &to, least) {
+                        return Ok(outlook);
+                    }
+                    step = length * (TURN[0] / turn.max(f64::MIN_POSITIVE)).min(GROWTH);
+                    here = to;
+                }
+            }
+        }
+        Ok(UNTOLD)
+    }
+
+    /// One step from a place, and whether the motion ends on it. The step is shortened where it is too long.
+    fn step(&mut self, here: &Vertex, step: &mut f64) -> Result<Step, MotionFailure> {
+        let (to, turn, end) = match self.leg(here, step) {
+            // Where the tool is in its surface a little there is no place beside the end of that.
+            None => {
+                let end = SurfaceEnd::just_ahead(self.prepared, here);
+                return Ok(Step::Told(end.map_or(UNTOLD, Outlook::Ends)));
+            }
+            Some(Leg::Along(to, turn)) => (to, turn, None),
+            Some(Leg::Over(beyond)) => {
+                let (to, end) = self.end_between(here, beyond);
+                (to, TURN[1], Some(end))
+            }
+        };
+        let sweep = here.sweep(self.prepared, &to);
+        let sag = sweep.length * turn / 8.0;
+        // A step that comes so near is shortened, however much nearer it comes.
+        let near = if self.may_be_tangent { f64::NEG_INFINITY } else { MARGIN * sag };
+        self.watcher.near_enough = near;
+        self.watcher.nearest.0 = f64::INFINITY;
+        let before = self.watcher.clone();
+        if self.watcher.scan(&sweep).is_some() || self.tangency.scan(here, &to)?.is_some() {
+            return Ok(Step::Told(Outlook::Open { way: self.travelled() + sweep.length }));
+        }
+        let approach = self.watcher.nearest;
+        if approach.0 <= near {
+            *step = 0.25 * sweep.length;
+            self.watcher = before;
+            return Ok(Step::TooLong);
+        }
+        if approach.0 < self.nearest.0 {
+            self.nearest = approach;
+        }
+        if let Some(end) = end {
+            return Ok(Step::Told(Outlook::Ends(end)));
+        }
+        self.note(sweep.length, turn);
+        Ok(Step::Leads(to, [sweep.length, turn]))
+    }
+
+    /// What is told once the path has closed on a step, or has left everything behind.
+    fn at_last(&self, here: &Vertex, to: &Vertex, least: f64) -> Option<Outlook> {
+        let is_closed = self.log.len() > 3 && self.passes(&self.start, here, to);
+        let course = if is_closed { self.turn() } else { self.left_behind(least)? };
+        // On a closed path those that were met come again.
+        Some(if is_closed && self.met() > self.met_before {
+            UNTOLD
+        } else {
+            let parallel = (self.tangency.nearest, self.tangency.check);
+            Outlook::Nothing { course, nearest: self.nearest, met: self.met(), parallel }
+        })
+    }
+
     /// The next place and the turn of the path on the way; shortens the step until the path is followed.
     fn leg(&self, here: &Vertex, step: &mut f64) -> Option<Leg> {
         while *step > LEAST * self.prepared.size {
