@@ -283,6 +283,16 @@ fn positions(sequence: &CutSequence) -> Result<Vec<ToolPosition>, VerifyError> {
         .collect()
 }
 
+/// How a vector goes on from the last one.
+struct Leads {
+    /// Cosine of the angle between both.
+    sine: f64,
+    /// The direction of the vector, that of the last one, and that in which the path comes to where the vector begins.
+    direction: Vec3,
+    heading: Vec3,
+    arriving: Vec3,
+}
+
 impl Judge<'_> {
     fn guard(&self) -> f64 {
         ROUND_OFF * self.size
@@ -458,55 +468,8 @@ impl Judge<'_> {
             let mut sine = if heading.norm() > 0.0 { direction.dot(&heading) } else { 1.0 };
             let mut begins = direction;
             if let (Some(part), Some(drive)) = (part, drive) {
-                let normals = [part.normal_at(vector)?, drive.normal_at(vector)?];
-                if vector == 0 {
-                    hand = Hand::setting_out(&normals, &heading);
-                }
-                let travel = normals[0].cross(&normals[1]);
-                let angle = travel.norm();
-                let turned = travel.dot(&heading);
-                // A vector to where the path turns by about a right angle does not tell which way it goes on.
-                let onward =
-                    if turned.abs() < NEARLY_SQUARE * angle { travel.dot(&arriving) } else { turned };
-                let along = travel * (onward.signum() / angle);
-                if angle > ALL_BUT_PARALLEL && angle <= PARALLEL {
-                    // The bands are wide across the path there: either what it leads along or the last vector tells.
-                    sine = sine.max(direction.dot(&along));
-                }
-                if angle > PARALLEL && heading.norm() > 0.0 {
-                    begins = along;
-                    // In a corner the tool goes away from the wall that is read there, along another.
-                    let leaves = normals.iter().any(|normal| normal.dot(&direction) > ACROSS);
-                    // The path of a turning tool is no line across both normals: the axis leads it aside.
-                    let turns = from.axis != to.axis;
-                    sine = direction.dot(&along).max(if turns || leaves { sine } else { f64::NEG_INFINITY });
-                    let at_end = [part.normal_at(vector + 1)?, drive.normal_at(vector + 1)?];
-                    let mut followed = normals;
-                    let bands = [part, drive].map(|bound| bound.intol + bound.outtol);
-                    let is_left = !turns && hand::leaves(&normals, &motion, bands);
-                    if sine <= 0.0
-                        && let Some((along, normals)) = hand.beyond_corner(&normals, &at_end, is_left)
-                    {
-                        (sine, begins, followed) = (direction.dot(&along), along, normals);
-                    }
-                    if sine <= 0.0
-                        && let Some(leap) = self.leap_beside(&hand, [part, drive], vector)
-                        && let Some((along, normals)) = hand.beyond_leap(&normals, &at_end, leap)
-                    {
-                        (sine, begins, followed) = (direction.dot(&along), along, normals);
-                    }
-                    if sine <= 0.0 && self.goes_round([part, drive], vector) {
-                        (sine, begins) = (1.0, direction);
-                    }
-                    hand.follow(followed, &begins, |hand| {
-                        self.keeps_hand_before(hand, [part, drive], vector)
-                    });
-                    if let Some(cosine) =
-                        self.crosses_over(&mut hand, [part, drive], vector, &[normals, at_end])
-                    {
-                        sine = sine.min(cosine);
-                    }
-                }
+                let leads = Leads { sine, direction, heading, arriving };
+                (sine, begins) = self.along_path(&mut hand, [part, drive], vector, &leads)?;
             }
             if sine <= 0.0 {
                 self.findings.add(Rule::Progress, vector, sine, -sine);
@@ -515,6 +478,79 @@ impl Judge<'_> {
             arriving = direction * (2.0 * direction.dot(&begins)) - begins;
         }
         Ok(())
+    }
+
+    /// The cosine between a vector and the path where it begins, and the direction of that there: along both surfaces, on the hand that is kept.
+    fn along_path(
+        &self,
+        hand: &mut Hand,
+        roles: [&Bound<'_>; 2],
+        vector: usize,
+        leads: &Leads,
+    ) -> Result<(f64, Vec3), VerifyError> {
+        let Leads { mut sine, direction, heading, arriving } = *leads;
+        let [part, drive] = roles;
+        let normals = [part.normal_at(vector)?, drive.normal_at(vector)?];
+        if vector == 0 {
+            *hand = Hand::setting_out(&normals, &heading);
+        }
+        let travel = normals[0].cross(&normals[1]);
+        let angle = travel.norm();
+        let turned = travel.dot(&heading);
+        // A vector to where the path turns by about a right angle does not tell which way it goes on.
+        let onward = if turned.abs() < NEARLY_SQUARE * angle { travel.dot(&arriving) } else { turned };
+        let along = travel * (onward.signum() / angle);
+        if angle > ALL_BUT_PARALLEL && angle <= PARALLEL {
+            // The bands are wide across the path there: either what it leads along or the last vector tells.
+            sine = sine.max(direction.dot(&along));
+        }
+        let is_told = angle > PARALLEL && heading.norm() > 0.0;
+        if !is_told {
+            return Ok((sine, direction));
+        }
+        // In a corner the tool goes away from the wall that is read there, along another.
+        let leaves = normals.iter().any(|normal| normal.dot(&direction) > ACROSS);
+        // The path of a turning tool is no line across both normals: the axis leads it aside.
+        let turns = self.positions[vector].axis != self.positions[vector + 1].axis;
+        let told = if turns || leaves { sine } else { f64::NEG_INFINITY };
+        let at_end = [part.normal_at(vector + 1)?, drive.normal_at(vector + 1)?];
+        let (sine, begins, followed) =
+            self.out_of_corner(hand, roles, vector, ([normals, at_end], &direction), along, told);
+        hand.follow(followed, &begins, |hand| self.keeps_hand_before(hand, roles, vector));
+        let cosine = self.crosses_over(hand, roles, vector, &[normals, at_end]);
+        Ok((cosine.map_or(sine, |cosine| sine.min(cosine)), begins))
+    }
+
+    /// The same before the hand is looked at, with the normals that the path keeps to: where the vector does not go along the path that the normals
+    /// where it begins tell, in the sense that is told there, along another wall of the corner.
+    fn out_of_corner(
+        &self,
+        hand: &Hand,
+        roles: [&Bound<'_>; 2],
+        vector: usize,
+        ([normals, at_end], direction): ([[Vec3; 2]; 2], &Vec3),
+        along: Vec3,
+        told: f64,
+    ) -> (f64, Vec3, [Vec3; 2]) {
+        let (from, to) = (self.positions[vector], self.positions[vector + 1]);
+        let mut found = (direction.dot(&along).max(told), along, normals);
+        let bands = roles.map(|bound| bound.intol + bound.outtol);
+        let is_left = from.axis == to.axis && hand::leaves(&normals, &(to.tip - from.tip), bands);
+        if found.0 <= 0.0
+            && let Some((along, normals)) = hand.beyond_corner(&normals, &at_end, is_left)
+        {
+            found = (direction.dot(&along), along, normals);
+        }
+        if found.0 <= 0.0
+            && let Some(leap) = self.leap_beside(hand, roles, vector)
+            && let Some((along, normals)) = hand.beyond_leap(&normals, &at_end, leap)
+        {
+            found = (direction.dot(&along), along, normals);
+        }
+        if found.0 <= 0.0 && self.goes_round(roles, vector) {
+            (found.0, found.1) = (1.0, *direction);
+        }
+        found
     }
 
     /// No vector is longer than MAXDP, which does not count where part and drive surface are both planes (language
