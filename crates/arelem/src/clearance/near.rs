@@ -7,6 +7,7 @@
 //! shown once for many positions.
 
 mod around;
+mod far;
 mod held;
 mod last;
 mod pieces;
@@ -22,22 +23,16 @@ use apt_geometry::{
 };
 
 pub(super) use self::around::{Around, Feet};
+use self::far::{Doubts, End, Far, Flank};
 #[cfg(test)]
 pub(crate) use self::held::LOOKS;
-use self::held::{Cap, Held, Rest};
+use self::held::{Cap, Held};
 use self::last::Last;
 use self::trough::{Acrosses, Bends, Grounds};
-use super::{
-    Contact, Tool,
-    certify::{Certificate, Effort, Face, Proof, certify},
-    memory::Memory,
-    patch::flank_between,
-};
+use super::{Contact, Tool, memory::Memory};
 
 /// Places that are remembered: the ends of a vector, and some between them.
 const MOST_PLACES: usize = 6;
-/// Ends of the tool that are remembered: above one height and another, below it or behind, here and there.
-const MOST_FAR: usize = 9;
 /// What following a contact counts in units of work.
 const WORK_OF_CONTACT: u32 = 4;
 /// Pieces of the tool that are tried for a contact.
@@ -80,12 +75,6 @@ const POINT_BALLS: [f64; 4] = [2.0, 0.5, 0.1, 0.02];
 const PATIENCE: f64 = 0.1;
 /// Radius, as a share of its height, that a thin tool counts with.
 const SLENDER: f64 = 0.05;
-/// Shares of the radius by which the flank is first shown to be farther away than contact, and then less.
-const FAR: [f64; 4] = [0.5, 0.25, 0.1, 0.02];
-/// The same where the sizes of the surface's parts show it, which gives as much more as they do.
-const APART: [f64; 4] = [0.1, 0.02, 0.005, 0.001];
-/// Share of the radius that is to be left of that above the level of the contact, or the tool may have moved since.
-const RESERVE: f64 = 0.04;
 /// How much deeper than at first the tool may come to lie in a steady ball.
 const DEEPER: f64 = 1.2;
 /// Bound of the stretches of the corner's arc that are looked at, and half the widest one (radians): the tangents at its ends meet
@@ -139,13 +128,6 @@ struct Start {
     place: Place,
 }
 
-/// Where an end of the tool was not shown to be far, and where no farther than is needed.
-#[derive(Debug, Default, Clone, Copy)]
-struct Doubts {
-    doubtful: Option<Vec3>,
-    without_reserve: Option<Vec3>,
-}
-
 /// Size of a steady ball, in radii of the tool.
 #[derive(Debug, Clone, Copy)]
 struct Size {
@@ -178,58 +160,6 @@ struct Zone {
     /// The tool end where it was made, and no place of a cap was farther from the surface.
     tip: Vec3,
     deepest: f64,
-}
-
-/// An end of the tool, beyond what a ball holds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum End {
-    /// The flank above a height.
-    Above(f64),
-    /// All below a height of the flank.
-    Below(f64),
-    /// What is not held about a contact on the other side of a part.
-    Behind(Rest),
-}
-
-impl End {
-    /// Whether another one is part of it, in a position of the tool.
-    fn has(self, other: Self, pose: &Pose<'_>) -> bool {
-        match (self, other) {
-            (Self::Above(own), Self::Above(from)) => own <= from,
-            (Self::Below(own), Self::Below(to)) => own >= to,
-            (Self::Behind(own), Self::Behind(other)) => pose.is_behind(&other, &own),
-            _ => false,
-        }
-    }
-
-    fn number(self) -> usize {
-        match self {
-            Self::Above(_) => 0,
-            Self::Below(_) => 1,
-            Self::Behind(_) => 2,
-        }
-    }
-}
-
-/// An end of the tool keeps a distance.
-#[derive(Debug, Clone, Copy)]
-struct Far {
-    side: f64,
-    /// The position in which that was shown.
-    tip: Vec3,
-    axis: Vec3,
-    end: End,
-    level: f64,
-}
-
-/// What showed last that the flank above a height is farther away, and by which of the shares.
-#[derive(Debug, Clone)]
-struct Flank {
-    from: f64,
-    /// Above this height balls are off the surface.
-    to: f64,
-    size: usize,
-    proof: Proof,
 }
 
 /// A circle of balls about the tool axis; a point for radius 0.
@@ -488,92 +418,6 @@ impl Near {
         let Ok(bends) = &self.bends else { return false };
         let trough = bends.trough(pose, contact, &grounds, extent, self.across.get_mut());
         trough.is_some_and(|trough| pose.lies_in(&trough, contact, held, level))
-    }
-
-    /// Whether an end of the tool is not nearer than a level.
-    fn is_alone(&mut self, pose: &Pose<'_>, end: End, level: f64, far: &mut Vec<Far>) -> bool {
-        let keeps = |far: &Far| far.end.has(end, pose) && far.left(pose) >= level;
-        let serves = |far: &Far| keeps(far) && far.has_reserve(pose, level);
-        if let Some(known) = far.iter().position(serves) {
-            far[..=known].rotate_right(1);
-            return true;
-        }
-        let kept = far.iter().any(keeps);
-        let patient = |tried: &Option<Vec3>| {
-            tried.is_some_and(|tried| (pose.tip - tried).norm() <= PATIENCE * pose.scale())
-        };
-        let doubts = &self.doubts[end.number()];
-        if patient(if kept { &doubts.without_reserve } else { &doubts.doubtful }) {
-            return kept;
-        }
-        let end = match end {
-            End::Behind(rest) => End::Behind(rest.wider()),
-            _ => end,
-        };
-        let shown = APART.iter().find_map(|share| pose.apart_of(end, level.abs() + share * pose.scale()));
-        let shown = match end {
-            End::Above(from) if shown.is_none() && !kept => self.shown_far(pose, from, level),
-            _ => shown,
-        };
-        let doubts = &mut self.doubts[end.number()];
-        let Some(level) = shown else {
-            *(if kept { &mut doubts.without_reserve } else { &mut doubts.doubtful }) = Some(*pose.tip);
-            return kept;
-        };
-        *doubts = Doubts::default();
-        far.truncate(MOST_FAR - 1);
-        far.insert(0, Far { side: pose.side, tip: *pose.tip, axis: pose.tool.axis, end, level });
-        true
-    }
-
-    /// What the flank above a height is shown to keep patch by patch, farther away than a level.
-    fn shown_far(&mut self, pose: &Pose<'_>, from: f64, level: f64) -> Option<f64> {
-        let face = Face { surface: pose.surface, side: pose.side };
-        let mut flank = self.flank.take().filter(|flank| flank.from == from);
-        let first = flank.as_ref().map_or(0, |flank| flank.size);
-        for (size, share) in FAR.iter().enumerate().skip(first) {
-            let level = level + share * pose.scale();
-            let to = pose.off_above(from, level);
-            let serves = flank.take().filter(|flank| flank.to >= to && flank.proof.serves());
-            let mut known = serves.unwrap_or_else(|| {
-                let patch = flank_between(pose.tool, [from, to]);
-                Flank { from, to, size, proof: Proof::of(vec![patch]) }
-            });
-            (known.size, known.proof.spread) = (size, AHEAD * pose.scale());
-            let is_far = to <= from
-                || certify(face, pose.tool, pose.tip, level, &mut known.proof, None, Effort::All)
-                    == Certificate::Holds;
-            flank = Some(known);
-            if is_far {
-                self.flank = flank;
-                return Some(level);
-            }
-        }
-        None
-    }
-}
-
-impl Zone {
-    /// The ends of the tool beyond it: above, below, and behind.
-    fn ends(&self, pose: &Pose<'_>) -> [Option<End>; 3] {
-        let Held { low, top, cap, .. } = self.held;
-        let above = (top < pose.tool.profile.top.height).then_some(End::Above(top));
-        let below = (low > 0.0).then_some(End::Below(low));
-        [above, below, cap.map(|cap| End::Behind(cap.rest))]
-    }
-}
-
-impl Far {
-    /// What the end of the tool keeps in another position: its points move no farther than the end does and the turn of the axis takes the
-    /// farthest of them.
-    fn left(&self, pose: &Pose<'_>) -> f64 {
-        self.level - pose.moved_from(&self.tip, &self.axis)
-    }
-
-    /// Whether more than a level is left, unless the tool has hardly moved since: moves are bounded by what is left.
-    fn has_reserve(&self, pose: &Pose<'_>, level: f64) -> bool {
-        let (left, reserve) = (self.left(pose), RESERVE * pose.scale());
-        left >= level + reserve || self.level - left <= reserve
     }
 }
 
