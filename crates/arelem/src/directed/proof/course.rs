@@ -4,18 +4,19 @@
 //! parabolas of curvature K from both ends.
 
 mod by_place;
+mod held;
 mod kept;
 
 use std::borrow::Cow;
 
 use apt_geometry::{Vec3, surface::Bend};
 
-use self::kept::CUTS_BY_FUNCTIONS;
+use self::{held::highest, kept::CUTS_BY_FUNCTIONS};
 use super::{
     ENOUGH, Extremes, LEAST_OPEN, Ledger, Line, MAX_ITERATIONS, Sample, cubic_minimum, ledger::About,
     second_derivative, tangents_meet,
 };
-use crate::clearance::{Contact, Tool};
+use crate::clearance::Tool;
 
 /// Share of a vector at its ends in which it is not cut first.
 const END: f64 = 0.05;
@@ -34,8 +35,6 @@ const MAX_DEPTH: u32 = 10;
 const MAX_SAMPLES: usize = 400;
 /// The same once one of them is out of the band: the vector is refused, and so many tell how much shorter it must be.
 const MAX_SAMPLES_REFUSED: usize = 48;
-/// Bisections that tell which bend serves.
-const BISECTIONS: usize = 20;
 /// Bound of the stretches on one vector that have no bound, as where the tool comes to the end of a surface: shorter ones may
 /// have, but so many tell that the vector must be shorter.
 const MAX_UNBOUNDED: usize = 12;
@@ -122,6 +121,51 @@ impl Asked<'_> {
             Bend::AtMost(bend) => Bend::AtMost(bend * self.speed * self.speed + self.swing),
             other => other,
         }
+    }
+}
+
+/// The bends of all distances on a stretch, as far as they are known or can be found.
+struct Bends<'a, 'b> {
+    line: &'a Line<'b>,
+    asked: Asked<'a>,
+    /// A piece of the stretch, the shortest that is of use.
+    piece: f64,
+}
+
+impl Bends<'_, '_> {
+    /// Whether a bound for the places asked about tells of pieces that they are in the band.
+    fn is_of_use(&self, bend: f64) -> bool {
+        match self.asked.scaled(Bend::AtMost(bend)) {
+            Bend::AtMost(bend) => 0.125 * bend * self.piece * self.piece <= self.line.role.band(),
+            Bend::Unbounded => false,
+        }
+    }
+
+    fn serves(&self, bend: Option<Bend>) -> bool {
+        matches!(bend, Some(Bend::AtMost(bend)) if self.is_of_use(bend))
+    }
+
+    /// The bound that is known from another stretch.
+    fn known(&self) -> Option<Bend> {
+        let Line { role, ledger, .. } = self.line;
+        ledger.known_bend(&role.gauge, &self.asked.about(), self.asked.range).map(Bend::AtMost)
+    }
+
+    /// The bound of a part of the stretch that takes no search.
+    fn of_shorter(&self) -> Option<Bend> {
+        let gauge = &self.line.role.gauge;
+        Ledger::bend_of_shorter(gauge, &self.asked.about(), self.asked.range, SHORTER).map(Bend::AtMost)
+    }
+
+    /// Whether the bound that is known was found for much more than this stretch.
+    fn is_loose(&self) -> bool {
+        self.line.ledger.is_loose(&self.asked.about(), self.asked.range)
+    }
+
+    /// The bound that is searched for, as closely as it takes to be of use.
+    fn found(&self, is_of_use: &dyn Fn(f64) -> bool) -> Option<Bend> {
+        let Line { role, ledger, .. } = self.line;
+        ledger.bend(&role.gauge, &self.asked.about(), self.asked.range, is_of_use)
     }
 }
 
@@ -277,52 +321,48 @@ impl Course<'_, '_> {
             Some(_) if cuts < CUTS_BY_FUNCTIONS => return Stretch::Open(None),
             _ => {}
         }
-        let asked = self.ask(a, b);
-        let Line { role, ledger, .. } = self.line;
-        let about = asked.about();
-        let bounded = |bend| self.bounded(a, b, asked.scaled(bend));
-        let found =
-            |is_of_use: &dyn Fn(f64) -> bool| ledger.bend(&role.gauge, &about, asked.range, is_of_use);
-        let piece = (b.x - a.x) / MOST_PIECES;
-        let is_of_use = |bend| match asked.scaled(Bend::AtMost(bend)) {
-            Bend::AtMost(bend) => 0.125 * bend * piece * piece <= role.band(),
-            Bend::Unbounded => false,
-        };
-        let serves = |bend: Option<Bend>| matches!(bend, Some(Bend::AtMost(bend)) if is_of_use(bend));
-        let mut bend = ledger.known_bend(&role.gauge, &about, asked.range).map(Bend::AtMost);
-        let shorter = || Ledger::bend_of_shorter(&role.gauge, &about, asked.range, SHORTER);
-        let known = bend.or_else(|| shorter().map(Bend::AtMost));
+        self.stretch_by_bends([a, b], cuts, told)
+    }
+
+    /// The same with what functions have told of the lower and the upper limit, if they were asked.
+    fn stretch_by_bends(&self, [a, b]: [&Sample; 2], cuts: usize, told: Option<[bool; 2]>) -> Stretch {
+        let Line { sweep, role, ledger, .. } = self.line;
+        let bends = Bends { line: self.line, asked: self.ask(a, b), piece: (b.x - a.x) / MOST_PIECES };
+        let Asked { ref tip, ref tool, .. } = bends.asked;
+        let bounded = |bend| self.bounded(a, b, bends.asked.scaled(bend));
+        let mut bend = bends.known();
+        let known = bend.or_else(|| bends.of_shorter());
         // What is straight without a bend of use that is known is told by places and parts of the surface, not by bends of all distances; by parts,
         // some hundred of them, only where the contacts at both ends do not tell it.
-        let is_straight = !serves(known) && self.is_straight(a, b);
+        let is_straight = !bends.serves(known) && self.is_straight(a, b);
         let is_clear = is_straight && (self.is_kept_by_contacts(a, b) || self.is_clear_between(a, b));
         if is_clear && self.is_held_from_both(a, b, false) {
             return Stretch::Held;
         }
         let mut is_asked = known.is_some();
-        if !is_asked && ledger.expects_use(&asked.tool, &asked.tip) {
-            (bend, is_asked) = (found(&is_of_use), true);
-            ledger.note_use(&asked.tip, serves(bend));
+        if !is_asked && ledger.expects_use(tool, tip) {
+            (bend, is_asked) = (bends.found(&|bend| bends.is_of_use(bend)), true);
+            ledger.note_use(tip, bends.serves(bend));
         }
         // Where pieces will do, that takes less than the contacts on a quadric, than those of a disc seen along a surface, and than contacts that have
         // just told nothing of as long a stretch.
-        let by_contacts = told.is_none() && !serves(bend)
+        let by_contacts = told.is_none() && !bends.serves(bend)
             || role.gauge.surface.has_charts()
-                && (cuts >= MOST_CUTS || ledger.expects_contacts(&asked.tool, &asked.tip, b.x - a.x))
-                && !role.gauge.is_seen_along(&asked.tool, &asked.tip);
+                && (cuts >= MOST_CUTS || ledger.expects_contacts(tool, tip, b.x - a.x))
+                && !role.gauge.is_seen_along(tool, tip);
         let (held, kept) = bend.map_or((false, false), bounded);
         // Where shorter stretches will do, two more feet on the surface cost more than a contact.
         let [is_kept, is_held] = told.unwrap_or_default();
-        let high = held || is_held || self.is_held_from_both(a, b, told.is_none() && !serves(bend));
+        let high = held || is_held || self.is_held_from_both(a, b, told.is_none() && !bends.serves(bend));
         let low = is_clear || kept || is_kept || high && by_contacts && self.is_kept_from_both(a, b);
         if high && by_contacts && !low {
-            ledger.note_silence(&asked.tip, b.x - a.x);
+            ledger.note_silence(tip, b.x - a.x);
         }
         if high && low {
             return Stretch::Held;
         }
-        if !is_asked || bend.is_some() && ledger.is_loose(&about, asked.range) {
-            bend = found(&|bend| {
+        if !is_asked || bend.is_some() && bends.is_loose() {
+            bend = bends.found(&|bend| {
                 let (held, kept) = bounded(Bend::AtMost(bend));
                 (high || held) && (low || kept)
             });
@@ -331,7 +371,7 @@ impl Course<'_, '_> {
         let is_high = high || held;
         // Parts of the surface take more than shorter stretches where those will do, unless contacts take as much.
         let by_parts = is_high
-            && ((cuts >= MOST_CUTS || self.line.sweep.turns()) && !serves(bend.or(known))
+            && ((cuts >= MOST_CUTS || sweep.turns()) && !bends.serves(bend.or(known))
                 || cuts >= MANY_CUTS
                 || role.gauge.is_hard());
         let is_low = low
@@ -400,101 +440,11 @@ impl Course<'_, '_> {
         }
     }
 
-    /// Whether the places of contact at both ends of a stretch show that the tool is nowhere above the band on it.
-    fn is_held_from_both(&self, a: &Sample, b: &Sample, by_contacts: bool) -> bool {
-        let Line { sweep, role, limits, .. } = self.line;
-        // No clearance changes by more than the tool moves.
-        let way = (b.x - a.x) * self.stretch_of(role.gauge.reach(sweep.tool()));
-        if 0.5 * (a.value + b.value + way) <= limits[1] {
-            return true;
-        }
-        if sweep.turns() {
-            return self.is_held_by_place(a, b)
-                || by_contacts
-                    && self.bend_of_carried(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)));
-        }
-        let at = |x: f64| sweep.at(x).0;
-        let (from, to) = (at(a.x), at(b.x));
-        let contacts = [(&from, &a.contact), (&to, &b.contact)];
-        let tool = sweep.at(a.x).1;
-        let allows = |most: Option<f64>| most.is_some_and(|most| most <= limits[1]);
-        allows(role.gauge.at_most_between(&tool, contacts))
-            || allows(role.gauge.at_most_along_surface(&tool, contacts))
-            || self.is_held_by_witness(a, b)
-            || by_contacts
-                && self.bend_of_contacts(a, b).is_some_and(|bend| self.line.allows(highest(a, b, bend)))
-    }
-
     /// How far what is measured of the tool within a distance of its end moves at most, for each length that the end does.
     fn stretch_of(&self, reach: f64) -> f64 {
         let Line { sweep, role, .. } = self.line;
         if role.gauge.on { 1.0 } else { sweep.stretch(reach) }
     }
-
-    /// Whether the point of the tool that goes from one contact to the other along with the vector is nowhere above the band. It is one of
-    /// the tool, which is convex; where contact moves little on the surface, as while the tool moves along a straight piece of it, so
-    /// does that point.
-    fn is_held_by_witness(&self, a: &Sample, b: &Sample) -> bool {
-        let (length, way) = (b.x - a.x, b.contact.tool - a.contact.tool);
-        // From place to place under what is above the tool it would go over the disc at its top, which touches nothing.
-        if [a, b].into_iter().any(|end| {
-            let (tip, tool) = self.line.sweep.at(end.x);
-            self.line.role.gauge.touches_from_below(&tool, &tip, &end.contact)
-        }) {
-            return false;
-        }
-        let [first, last] =
-            [a, b].map(|end| Sample { slope: end.contact.gradient.dot(&way) / length, ..*end });
-        let held = |bend: f64| self.line.allows(highest(&first, &last, bend * (way.norm() / length).powi(2)));
-        held(0.0) && {
-            let most = 8.0 * self.line.role.band() / way.norm_squared();
-            self.bend_of_witness(a, b, greatest(most, held)).is_some_and(held)
-        }
-    }
-
-    /// Bound of the second derivative of that point's distance by the length of its way, closely where it is more than enough.
-    fn bend_of_witness(&self, a: &Sample, b: &Sample, enough: f64) -> Option<f64> {
-        let Line { sweep, role, .. } = self.line;
-        let (from, tool) = sweep.at(a.x);
-        role.gauge.bend_along((&tool, &from), &a.contact, &(b.contact.tool - a.contact.tool), enough)
-    }
-
-    /// Bound of the second derivative of the distances of the points of contact of both ends on the stretch between: the
-    /// clearance is nowhere greater than either of these, wherever on the tool contact is there.
-    fn bend_of_contacts(&self, a: &Sample, b: &Sample) -> Option<f64> {
-        let Line { sweep, role, .. } = self.line;
-        let way = sweep.direction * (b.x - a.x);
-        let (_, tool) = sweep.at(a.x);
-        let bend = |contact: &Contact, sense: f64| role.gauge.bend_at(&tool, &contact.tool, &(way * sense));
-        Some(bend(&a.contact, 1.0)?.max(bend(&b.contact, -1.0)?))
-    }
-
-    /// The same where the tool turns and takes these points along: none of them moves faster than the tool end and the turn of its arm
-    /// together, and its way bends no more than the arm swings.
-    fn bend_of_carried(&self, a: &Sample, b: &Sample) -> Option<f64> {
-        let Line { sweep, role, .. } = self.line;
-        let middle = 0.5 * (a.x + b.x);
-        let (_, tool) = sweep.at(middle);
-        let bend = |end: &Sample| {
-            let arm = (end.contact.tool - sweep.at(end.x).0).norm();
-            let stretch = sweep.stretch(arm);
-            let center = sweep.carried(&end.contact.tool, end.x, middle);
-            let bend = role.gauge.bend_about(&tool, &center, 0.5 * (b.x - a.x) * stretch)?;
-            // Along a slower way it bends by less.
-            Some(bend.max(0.0) * stretch * stretch + sweep.swing(arm))
-        };
-        if role.gauge.on { None } else { Some(bend(a)?.max(bend(b)?)) }
-    }
-}
-
-/// The greatest bend up to a bound that holds, of which less does too.
-fn greatest(most: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    let mut range = [0.0, most];
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (range[0] + range[1]);
-        range[usize::from(!holds(middle))] = middle;
-    }
-    range[0]
 }
 
 /// Where a vector is looked at first: at the extreme of the cubic through both ends with their slopes, if it has just one.
@@ -548,25 +498,12 @@ pub(in crate::directed) fn lowest((left, right): (f64, f64), bend: f64, length: 
     left + (slope - sag) * s + 0.5 * bend * s * s
 }
 
-/// Greatest value on a stretch below the parabolas from both ends with the given second derivative.
-fn highest(a: &Sample, b: &Sample, bend: f64) -> f64 {
-    let h = b.x - a.x;
-    let left = |s: f64| a.value + (a.slope + 0.5 * bend * s) * s;
-    let right = |s: f64| {
-        let t = h - s;
-        b.value - (b.slope - 0.5 * bend * t) * t
-    };
-    // Each is highest at an end of its part, wherever the parts meet; best where both agree: their difference is linear.
-    let (at_a, at_b) = (left(0.0) - right(0.0), left(h) - right(h));
-    let meet = if at_a < 0.0 && at_b > 0.0 { h * at_a / (at_a - at_b) } else { 0.5 * h };
-    left(meet).max(right(meet)).max(a.value).max(b.value)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::clearance::Contact;
 
     fn sample(x: f64, value: f64, slope: f64) -> Sample {
         let none = Vec3::zeros();
