@@ -2,6 +2,7 @@
 
 mod conditional;
 mod context;
+mod include;
 mod output;
 mod state;
 mod step;
