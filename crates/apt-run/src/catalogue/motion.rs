@@ -1,18 +1,13 @@
 //! Words for the arithmetic element, its verifier and the path transformations (codes 06xx and 07xx).
 
+mod cutter;
 mod edit;
 mod verdict;
+mod warning;
 
 use apt_cldata::edit::EditErrorKind;
-use apt_geometry::{
-    Vec3,
-    canonical::GeometryKind,
-    cutter::{CutterError, CutterWarning},
-    motion::Relation,
-};
-use arelem::error::{
-    AxisFailure, Course, Iteration, MotionFailure as Failure, MotionWarning as Warning, RoleName,
-};
+use apt_geometry::{Vec3, canonical::GeometryKind, motion::Relation};
+use arelem::error::{AxisFailure, Course, Iteration, MotionFailure as Failure, RoleName};
 
 use super::{Text, a_kind, milling, number, pocket, remedy, say, tilt};
 use crate::{diagnostic::Severity, pipeline::RunFindingKind};
@@ -30,7 +25,7 @@ pub(super) fn word(kind: &RunFindingKind) -> (Text, Severity, Option<u16>) {
             let text = failure_text(failure).maybe(remedy::hint(remedies));
             (text, Severity::Error, failure.apt3())
         }
-        RunFindingKind::Warning(warning) => (warning_text(warning), Severity::Warning, warning.apt3()),
+        RunFindingKind::Warning(warning) => (warning::text(warning), Severity::Warning, warning.apt3()),
         RunFindingKind::Unverified(evidence) => match verdict::uncleared(evidence) {
             Some(text) => (text, Severity::Warning, None),
             None => (verdict::unverified(evidence), Severity::Error, None),
@@ -101,7 +96,7 @@ pub(super) fn place(at: &Vec3) -> String {
 
 fn failure_text(failure: &Failure) -> Text {
     match failure {
-        Failure::Cutter(error) => cutter(error),
+        Failure::Cutter(error) => cutter::text(error),
         Failure::Pocket(failure) => pocket::text(failure),
         _ => setting(failure).or_else(|| start(failure)).unwrap_or_else(|| path(failure)),
     }
@@ -476,141 +471,5 @@ fn iteration_name(iteration: Iteration) -> &'static str {
         Iteration::StepLength => "the search for the length of a cut vector",
         Iteration::Stop => "the search for the check surface",
         Iteration::FinalVector => "the search for the last cut vector",
-    }
-}
-
-fn cutter(error: &CutterError) -> Text {
-    let why = match error {
-        CutterError::Count { found } => {
-            return say("APT0650", format!("CUTTER takes 1, 2 or 7 numbers, not {found}"));
-        }
-        CutterError::NotFinite { position } => format!("number {position} is too large, or not a number"),
-        CutterError::Diameter { diameter } => format!("the diameter {} is negative", number(*diameter)),
-        CutterError::Height { height } => format!("the height {} is negative", number(*height)),
-        CutterError::Angles { .. } => "its two angles add up to 90° or more".to_owned(),
-        CutterError::Alpha { .. } => "the angle of the lower line is negative".to_owned(),
-        CutterError::HeightBelowLine { height, least } => {
-            format!(
-                "the height {} is less than the end of the lower line at {}",
-                number(*height),
-                number(*least)
-            )
-        }
-        CutterError::Beta { .. } => "the angle of the upper line is negative".to_owned(),
-        CutterError::CornerRadius { radius } => format!("the corner radius {} is negative", number(*radius)),
-        CutterError::CornerBelowLine { height, least } => {
-            format!(
-                "the corner centre at height {} is below the corner at {}",
-                number(*height),
-                number(*least)
-            )
-        }
-        CutterError::ArcAtTip { .. } => "the corner arc does not fit the tip".to_owned(),
-        CutterError::ArcMissesLowerLine { distance, radius, .. } => format!(
-            "the corner arc of radius {} does not meet the lower line, which is {} from its centre",
-            number(*radius),
-            number(*distance)
-        ),
-        CutterError::ArcMissesUpperLine { distance, radius, .. } => format!(
-            "the corner arc of radius {} does not meet the upper line, which is {} from its centre",
-            number(*radius),
-            number(*distance)
-        ),
-        CutterError::ArcAtTop { reached, height } => {
-            format!("the corner arc reaches {} and the cutter ends at {}", number(*reached), number(*height))
-        }
-        CutterError::CornerTooNear { distance, radius } => format!(
-            "the corner radius {} reaches beyond the corner, which is {} from its centre",
-            number(*radius),
-            number(*distance)
-        ),
-    };
-    say("APT0651", format!("there is no such cutter: {why}"))
-        .hint("CUTTER/d,r is enough for most tools; the corner must touch both lines")
-}
-
-fn warning_text(warning: &Warning) -> Text {
-    match warning {
-        Warning::WrongSideOfDrive { side, .. } => {
-            let word = remedy::drive_side_word(*side);
-            say("APT0660", "the tool is on the other side of the drive surface than TLLFT or TLRGT says")
-                .hint(format!(
-                    "seen along the motion it is where {word} says; or the direction word is wrong"
-                ))
-        }
-        Warning::Cutter(CutterWarning::ArcReachesAxis) => {
-            say("APT0661", "the corner arc of the cutter reaches the tool axis")
-        }
-        Warning::Cutter(CutterWarning::ArcReachesTop) => {
-            say("APT0662", "the corner arc of the cutter reaches its top")
-        }
-        Warning::AutomaticPartWithTiltedAxis { tilt } => say(
-            "APT0663",
-            format!(
-                "AUTOPS makes a horizontal part surface, and the tool axis is tilted by {}°",
-                number(tilt.to_degrees())
-            ),
-        )
-        .hint("give the part surface by PSIS"),
-        Warning::Gouge { role: name, depth, contact, on, ahead } => say(
-            "APT0665",
-            format!(
-                "{} {} deep into the {} at {}",
-                if *ahead { "going on, the tool would cut" } else { "the tool cuts" },
-                number(*depth),
-                role(*name),
-                place(&contact.surface)
-            ),
-        )
-        .hint(if *on {
-            format!(
-                "with the tool end at {}, which is ON the surface whatever the rest of the tool cuts; TLOFPS keeps all of it out",
-                place(&contact.tip)
-            )
-        } else {
-            format!(
-                "the tool end would be at {}; take a smaller tool, or stop before the narrow place",
-                place(&contact.tip)
-            )
-        }),
-        Warning::EndsBesideTool { role: name, place: end } => say(
-            "APT0666",
-            format!("the {} ends at {}, beside the tool", role(*name), place(end)),
-        )
-        .hint(
-            "beyond its end a surface has no sides: one that reaches farther, or a shorter tool, settles it",
-        ),
-        Warning::SurfaceTwice { roles: [one, other], start_up } => say(
-            "APT0667",
-            format!("one surface is the {} and the {} of this motion", role(*one), role(*other)),
-        )
-        .hint(match other {
-            _ if *start_up => {
-                "the tool is as free as if it were named once, or asked for two things that exclude each other: name another surface, or leave it out"
-            }
-            RoleName::Check(_) => "a surface that the tool follows stops it nowhere: name another one to stop at",
-            _ => "only the direction asked for leads the tool then: name another drive surface, or another part surface by PSIS",
-        }),
-        Warning::DirectionFromOrigin { direction } => say(
-            "APT0668",
-            format!(
-                "FROM leaves the forward direction undefined; that from the origin to the tool is taken, {}",
-                place(direction)
-            ),
-        )
-        .hint("give INDIRV or INDIRP before the motion, or bring the tool there by GO, GOTO or GODLTA"),
-        Warning::DeepUndercut { role: name, thickness, radius } => say(
-            "APT0669",
-            format!(
-                "THICK {} for the {} is more than the radius of the cutter, {}",
-                number(*thickness),
-                role(*name),
-                number(*radius)
-            ),
-        )
-        .hint("no point of the tool's round is left on its side; values of THICK are for part, drive and check surface in this order"),
-        Warning::NegativeTolerance { value } => {
-            say("APT0664", format!("the tolerance {} is negative and is taken as zero", number(*value)))
-        }
     }
 }
