@@ -210,13 +210,18 @@ impl Profile {
         (if inside { -distance } else { distance }, best.1)
     }
 
+    /// Whether a place so far from the profile is beside it, in a direction that is more than rounding.
+    pub fn is_beside(&self, distance: f64) -> bool {
+        distance.abs() > NEARLY_ON * (self.greatest_radius() + self.top.height)
+    }
+
     /// Signed distance of the point (ρ, z), ρ ≥ 0, from the solid tool (positive outside), and a unit direction in which it grows
     /// by no less than along any straight line: the convex function of the distance is nowhere below its tangent there.
     pub fn outward(&self, radius: f64, height: f64) -> (f64, [f64; 2]) {
         let (distance, nearest) = self.distance(radius, height);
         let away = [radius - nearest.radius, height - nearest.height];
         let length = away[0].hypot(away[1]);
-        if length > NEARLY_ON * (self.greatest_radius() + self.top.height) {
+        if self.is_beside(length) {
             let sense = distance.signum() / length;
             return (distance, away.map(|x| x * sense));
         }

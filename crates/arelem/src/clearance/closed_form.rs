@@ -12,8 +12,6 @@ use super::{Contact, Tool, dual};
 
 /// Sine of the angle between two axes below which they are parallel.
 const PARALLEL: f64 = 1e-13;
-/// Distance of a place from the tool, relative to the size of that, up to which it is on it.
-const NEARLY_ON: f64 = 1e-7;
 /// Sine of the angle to the plane across the tool below which a normal lies in it.
 const LEVEL: f64 = 1e-9;
 
@@ -123,7 +121,7 @@ pub(super) fn ball_outside(tool: &Tool, center: &Vec3, radius: f64, tip: &Vec3) 
     let (along, across, radial) = tool.split(&(center - tip));
     let (distance, point) = tool.profile.distance(across, along);
     let contact = tip + tool.axis * point.height + radial * point.radius;
-    let normal = if distance.abs() > NEARLY_ON * (tool.radius() + tool.profile.top.height) {
+    let normal = if tool.profile.is_beside(distance) {
         let outward = (contact - center).try_normalize(0.0).unwrap_or(-radial);
         if distance < 0.0 { -outward } else { outward }
     } else {
