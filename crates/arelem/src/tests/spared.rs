@@ -377,7 +377,7 @@ fn what_no_full_vectors_can_spare_is_not_looked_through() {
     let before = TRIED.get();
     p.attempt(&motion(Turn::Forward, &drive, &[(To, 2, &stop)])).expect("a path");
     let tried = TRIED.get() - before;
-    assert!(tried < 30_000, "{tried} vectors tried for {}", p.last().points.len());
+    assert!(tried < 12_000, "{tried} vectors tried for {}", p.last().points.len());
 }
 
 /// A line beside a wall whose rulings are nearly along it: its contact goes from end to end of it, and beside INTOL, which is zero, next to nothing is proven

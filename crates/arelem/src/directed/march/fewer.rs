@@ -2,7 +2,7 @@
 //! the path bends to and fro, turns in corners or begins at the wrong limit of a band, that may take a vector more than if some of those
 //! before had ended elsewhere. Stretches of vectors that fill less than one of them fewer are looked through again, with vertices on several levels of
 //! the bands: of each level the farthest place to which one vector leads, then two, and so on, until one leads to where the path had come with a
-//! vector more.
+//! vector more. From vertices to which they come on the way it is not looked again.
 
 use std::ops::Range;
 
@@ -13,7 +13,10 @@ use crate::{
     attitude::Sweep,
     bound::{self, Bent},
     clearance::Shape,
-    directed::stop::{Event, Watcher},
+    directed::{
+        Prepared,
+        stop::{Event, Watcher},
+    },
     error::MotionFailure,
     role::{Bend, Working},
 };
@@ -24,11 +27,13 @@ const BESIDES: f64 = 2.0;
 /// How many vectors make a stretch.
 const LEAST_TOGETHER: usize = 2;
 const MOST_TOGETHER: usize = 16;
+/// Vertices from which it is looked in one go: the stretch that begins at the first of them has as many vectors more as there are others.
+const MOST_STARTS: usize = 48;
 /// What a stretch leaves at least of one vector fewer: vertices on levels of the bands fill less than the fullest vectors.
 const ROOM: f64 = 0.05;
 /// Columns of places along a stretch for each of its vectors.
 const COLUMNS: usize = 12;
-/// Bound of the vectors that are tried for each of a motion, some times what the march takes, for no more vectors than these, and for one stretch.
+/// Bound of the vectors that are tried for each of a motion, some times what the march takes, for no more vectors than these, and for so many together.
 const MOST_TRIED: u32 = 200;
 const FEW: usize = 250;
 const MOST_FOR_ONE: u32 = 4_000;
@@ -66,6 +71,8 @@ struct Reached {
     vertex: Vertex,
     along: f64,
     old: Vec3,
+    /// The level of the bands that it is on, or next to.
+    level: usize,
     /// On which hand a vector to it keeps both surfaces: to a vertex that was in a corner of the path the one that led there may have kept them on the
     /// other one, for contact is told on the way out of it.
     hand: Option<f64>,
@@ -109,6 +116,14 @@ struct Stretch {
     hand: f64,
     /// How many vectors may still be tried.
     left: u32,
+}
+
+/// What comes of looking through a stretch.
+enum Looked {
+    /// So many vectors can be one fewer, with these positions between them.
+    Fewer(usize, Vec<Vec3>),
+    /// None are fewer of the first so many vectors; nor of as many of them from any vertex before another one.
+    InVain { until: usize, before: usize },
 }
 
 impl March<'_> {
@@ -208,22 +223,38 @@ impl March<'_> {
     ) -> Result<bool, MotionFailure> {
         let mut is_changed = vec![false; fills.len()];
         let mut found = Vec::new();
-        for k in by_room(fills) {
-            if *left == 0 {
-                break;
-            }
-            let ahead = is_changed[k..].iter().take(MOST_TOGETHER);
-            let vectors = ahead.take_while(|is_changed| !**is_changed).count();
-            if is_tried[k] || vectors < LEAST_TOGETHER {
-                continue;
-            }
-            is_tried[k] = true;
-            if let Some((count, between)) = self.fewer_from(start, k, &fills[k..k + vectors], left)? {
-                is_changed[k..k + count].fill(true);
-                found.push((k, count, between));
-            } else if k + vectors == fills.len() {
-                // From no vertex on the way to the end there are fewer.
-                is_tried[k..].fill(true);
+        let starts = by_room(fills);
+        let mut leaves_room = vec![false; fills.len()];
+        starts.iter().for_each(|k| leaves_room[*k] = true);
+        for k in starts {
+            while *left > 0 && leaves_room[k] && !is_tried[k] && !is_changed[k] {
+                let may_begin = |k: &usize| leaves_room[*k] && !is_tried[*k] && !is_changed[*k];
+                // From the first of the vertices from which it is to be looked in turn vectors lead as far as from each of the others.
+                let back = (0..k).rev().take(MOST_STARTS / 2).take_while(may_begin).count();
+                let first = k - back;
+                let together = (first..fills.len()).take(MOST_STARTS).take_while(may_begin);
+                let ends: Vec<usize> = together.map(|k| end_from(k, &is_changed)).collect();
+                let end = ends.last().copied().unwrap_or(first);
+                if end - first < LEAST_TOGETHER {
+                    is_tried[first] = true;
+                    continue;
+                }
+                match self.fewer_from(start, first, &fills[first..end], left)? {
+                    Looked::Fewer(count, between) => {
+                        is_changed[first..first + count].fill(true);
+                        found.push((first, count, between));
+                    }
+                    // From no vertex on the way to the end there are fewer.
+                    Looked::InVain { until, .. } if first + until == fills.len() => {
+                        is_tried[first..].fill(true);
+                    }
+                    Looked::InVain { until, before } => {
+                        is_tried[first] = true;
+                        let looked =
+                            ends.iter().take(before).take_while(|end| **end <= first + until).count();
+                        is_tried[first..first + looked].fill(true);
+                    }
+                }
             }
         }
         found.sort_by_key(|(k, ..)| std::cmp::Reverse(*k));
@@ -238,16 +269,18 @@ impl March<'_> {
         Ok(has_saved)
     }
 
-    /// How many of some vectors from vertex `k` on, which fill so much of one each, can be one fewer, and the positions between those.
+    /// Whether of some vectors from vertex `k` on, which fill so much of one each, the first ones can be one fewer.
     fn fewer_from(
         &self,
         start: &Vertex,
         k: usize,
         fills: &[f64],
         left: &mut u32,
-    ) -> Result<Option<(usize, Vec<Vec3>)>, MotionFailure> {
+    ) -> Result<Looked, MotionFailure> {
         let old: Vec<Vec3> = (k..=k + fills.len()).map(|k| self.at(start, k)).collect();
-        let Some(mut stretch) = self.stretch(&old, fills, *left)? else { return Ok(None) };
+        let Some(mut stretch) = self.stretch(&old, fills, *left)? else {
+            return Ok(Looked::InVain { until: MOST_TOGETHER.min(fills.len()), before: 1 });
+        };
         let had = stretch.left;
         let found = self.with_fewer(&mut stretch);
         *left -= had - stretch.left;
@@ -256,19 +289,19 @@ impl March<'_> {
 
     /// The stretch between positions, of vectors that fill so much; `None` where it begins on no hand.
     fn stretch(&self, old: &[Vec3], fills: &[f64], left: u32) -> Result<Option<Stretch>, MotionFailure> {
+        let [part, drive] = [&self.prepared.part, &self.prepared.drive].map(levels);
+        let levels: Vec<[f64; 2]> =
+            part.iter().flat_map(|part| drive.iter().map(move |drive| [*part, *drive])).collect();
         let (mut along, mut were) = (0.0, Vec::new());
         for (k, tip) in old.iter().enumerate() {
             let before = old[k.saturating_sub(1)];
             along += (tip - before).norm();
             let way = old[(k + 1).min(old.len() - 1)] - before;
             let vertex = Vertex::at(self.prepared, *tip, &way)?;
-            let hand = hand_of(&vertex, &(tip - before));
-            were.push(Reached { vertex, along, old: *tip, hand, from: 0 });
+            let (hand, level) = (hand_of(&vertex, &(tip - before)), self.level_of(&levels, &vertex));
+            were.push(Reached { vertex, along, old: *tip, level, hand, from: 0 });
         }
         let Some(hand) = hand_of(&were[0].vertex, &(old[1] - old[0])) else { return Ok(None) };
-        let [part, drive] = [&self.prepared.part, &self.prepared.drive].map(levels);
-        let levels: Vec<[f64; 2]> =
-            part.iter().flat_map(|part| drive.iter().map(move |drive| [*part, *drive])).collect();
         let column = |pair: &[Reached], k: usize| {
             let (share, way) = (k as f64 / COLUMNS as f64, pair[1].old - pair[0].old);
             Column {
@@ -280,17 +313,37 @@ impl March<'_> {
         };
         let columns =
             were.windows(2).flat_map(|pair| (0..COLUMNS).map(move |k| column(pair, k))).skip(1).collect();
-        let (fills, left) = (fills.to_vec(), left.min(MOST_FOR_ONE));
+        let together = fills.len().div_ceil(MOST_TOGETHER) as u32;
+        let (fills, left) = (fills.to_vec(), left.min(MOST_FOR_ONE * together));
         Ok(Some(Stretch { columns, levels, were, fills, hand, left }))
     }
 
-    /// How many vectors of a stretch can be one fewer, and the positions between those.
-    fn with_fewer(&self, stretch: &mut Stretch) -> Result<Option<(usize, Vec<Vec3>)>, MotionFailure> {
+    /// The level that a vertex is on, or next to, in shares of the bands.
+    fn level_of(&self, levels: &[[f64; 2]], vertex: &Vertex) -> usize {
+        let Prepared { part, drive, .. } = self.prepared;
+        let bands = [part.band(), drive.band()];
+        let clearances = [vertex.part.clearance, vertex.drive.clearance];
+        let away =
+            |level: &[f64; 2]| -> f64 { (0..2).map(|k| (level[k] - clearances[k]).abs() / bands[k]).sum() };
+        let nearest = levels.iter().enumerate().min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
+        nearest.map_or(0, |(level, _)| level)
+    }
+
+    /// Whether vectors of a stretch can be one fewer: of the first ones, as few as may be.
+    fn with_fewer(&self, stretch: &mut Stretch) -> Result<Looked, MotionFailure> {
         let mut reached = vec![stretch.were[0]];
         let mut latest = 0..1;
-        for count in LEAST_TOGETHER..stretch.were.len() {
+        let last = stretch.were.len() - 1;
+        // Vectors lead farthest from where they begin farthest on: as long as they come to the vertices of the path, or beyond, on the levels of these, none
+        // lead farther from there. Before which vertex it is so, and the vectors that are looked through for those.
+        let (mut before, mut most) = (last, last);
+        let mut until = 0;
+        for count in LEAST_TOGETHER..=last {
             if self.stepper.patience().is_over() {
                 return Err(MotionFailure::Cancelled);
+            }
+            if count > most {
+                break;
             }
             let end = stretch.were[count];
             if let Some(mut k) = latest.clone().rev().find(|k| self.is_vector(stretch, &reached[*k], &end)) {
@@ -300,20 +353,29 @@ impl March<'_> {
                     k = reached[k].from;
                 }
                 between.reverse();
-                return Ok(Some((count, between)));
+                return Ok(Looked::Fewer(count, between));
             }
+            until = if stretch.left > 0 { count } else { count - 1 };
             let mut farthest = self.farthest_from(stretch, &reached, latest.clone());
             if farthest.is_empty() || stretch.left == 0 {
+                before = before.min(count - 1);
                 break;
+            }
+            let were = stretch.were[count - 1];
+            let has_come = |place: &Reached| place.level == were.level && place.along >= were.along;
+            if before == last && !farthest.iter().any(has_come) {
+                before = count - 1;
+                most = last.min(count - 2 + MOST_TOGETHER);
             }
             farthest.sort_by(|a, b| a.along.total_cmp(&b.along));
             if !self.has_room(stretch, farthest.last(), count - 1) {
+                until = most;
                 break;
             }
             latest = reached.len()..reached.len() + farthest.len();
             reached.extend(farthest);
         }
-        Ok(None)
+        Ok(Looked::InVain { until, before })
     }
 
     /// Whether what is left of a stretch behind the farthest place to which some vectors lead may be gone along in one vector fewer than it was, with those:
@@ -393,7 +455,7 @@ impl March<'_> {
         let Column { along, old, sense, places } = &mut stretch.columns[column];
         let settled = || Vertex::settled_at(self.prepared, at, old, sense);
         let vertex = (*places[level].get_or_insert_with(settled))?;
-        Some(Reached { vertex, along: *along, old: *old, hand: Some(stretch.hand), from: 0 })
+        Some(Reached { vertex, along: *along, old: *old, level, hand: Some(stretch.hand), from: 0 })
     }
 
     /// Whether a vector from one place to another one leads onward and keeps the bands.
@@ -423,6 +485,11 @@ impl March<'_> {
             part.beyond(vertex.part.clearance) <= 0.0 && drive.beyond(vertex.drive.clearance) <= 0.0
         })
     }
+}
+
+/// Where the vectors end that may be looked through together from a vertex on: at one of those that have changed, or after as many as may be.
+fn end_from(k: usize, is_changed: &[bool]) -> usize {
+    k + is_changed[k..].iter().take(MOST_TOGETHER).take_while(|is_changed| !**is_changed).count()
 }
 
 /// The vectors with which stretches begin that leave room of one fewer, the most of it first.
