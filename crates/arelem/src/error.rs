@@ -350,8 +350,8 @@ pub enum MotionFailure {
         at: Vec3,
         /// The tool stands in the band of the check surface there, but the motion begins so, or the tool leaves the surface.
         is_there: bool,
-        /// The tool only touches the check surface there: how far it is in it, or out of it again, at most.
-        touched: Option<f64>,
+        /// The tool only touches the check surface there: it is in it, or out of it again, by no more than `nearest`.
+        is_touched: bool,
         /// Where the path turns by more than a right angle first, because the tool comes to a second wall.
         turns_back: Option<TurnsBack>,
         /// How that is known.

@@ -332,7 +332,9 @@ fn path(failure: &Failure) -> Text {
             format!("part and drive surface are tangent at {}, so there is no path between them", place(tip)),
         )
         .hint("choose a drive surface that stands on the part surface"),
-        Failure::NeverMet { relation, touched: Some(depth), at, .. } => only_touched(*relation, at, *depth),
+        Failure::NeverMet { relation, is_touched: true, nearest, at, .. } => {
+            only_touched(*relation, at, *nearest)
+        }
         Failure::NeverMet { relation: wanted, nearest, at, is_there, turns_back, course, .. } => say(
             "APT0641",
             if *is_there {

@@ -277,7 +277,7 @@ fn crossing(
             nearest,
             at: track.at(x),
             is_there: prepared.checks[0].is_there(start, prepared.size),
-            touched: None,
+            is_touched: false,
             turns_back: None,
             course: track.never_meets(stop),
         });
@@ -338,7 +338,7 @@ fn crossing(
             nearest: depth,
             at: track.at(x),
             is_there: true,
-            touched: Some(depth),
+            is_touched: true,
             turns_back: None,
             course: Course::Analytic,
         },

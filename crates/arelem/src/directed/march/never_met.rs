@@ -111,7 +111,7 @@ impl March<'_> {
                 nearest,
                 at,
                 is_there: self.prepared.checks[check].is_as_near(nearest, self.prepared.size),
-                touched: touched.map(|touch| touch.0),
+                is_touched: touched.is_some(),
                 turns_back: self.turns_back(),
                 course,
             };

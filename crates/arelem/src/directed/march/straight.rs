@@ -55,7 +55,7 @@ pub(super) fn run(
             nearest,
             at,
             is_there: prepared.checks[check].is_as_near(nearest, prepared.size),
-            touched: touched.map(|touch| touch.0),
+            is_touched: touched.is_some(),
             turns_back: None,
             course: Course::Away { travelled },
         }

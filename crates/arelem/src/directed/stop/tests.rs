@@ -213,7 +213,7 @@ fn what_is_in_a_surface_by_less_than_a_step_is_not_past_it() {
         let mut prepared =
             prepare(&p.state, Turn::Forward, &drive, &checks, &mut Vec::new(), Patience::default())
                 .expect("a motion");
-        (prepared.tool, prepared.tip) = (Tool::new(ball.clone(), Vec3::z()), v(along[0], 0.0, 2.0));
+        (prepared.tool, prepared.tip) = (Tool::new(ball, Vec3::z()), v(along[0], 0.0, 2.0));
         let mut watcher = Watcher::new(&prepared, &checks);
         let places = along.iter().enumerate().map(|(k, x)| v(*x, 0.0, 2.0 - 0.1 * k as f64));
         let places: Vec<Vec3> = places.collect();
