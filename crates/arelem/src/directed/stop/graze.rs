@@ -3,7 +3,7 @@
 
 use apt_geometry::motion::Relation;
 
-use super::{Event, Status, Trail, Watch, Watcher};
+use super::{BISECTIONS, Event, Status, Trail, Watch, Watcher};
 use crate::{
     attitude::Sweep,
     directed::march::Vertex,
@@ -62,6 +62,22 @@ fn least_up_to(
         }
     }
     Some(if at_x <= at_y { (x, at_x) } else { (y, at_y) })
+}
+
+/// Where a function that falls below zero on a stretch has come down to that, by halving; `None` where it begins below.
+fn first_zero([mut low, mut high]: [f64; 2], value: &dyn Fn(f64) -> Option<f64>) -> Option<f64> {
+    if value(low)? <= 0.0 {
+        return None;
+    }
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if value(middle)? > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(0.5 * (low + high))
 }
 
 /// The least value of a function of one valley on a stretch and where it is, by parabolas through the last places, and by golden sections
@@ -188,8 +204,8 @@ impl Watcher<'_> {
         })
     }
 
-    /// Where a vector that crosses the check surface's relation belongs to a path that only touches it: vectors run
-    /// elsewhere in their bands than the path that ends on part and drive surface.
+    /// Where a vector that crosses the check surface's relation belongs to a path that only touches it, or goes through it so little that corrections
+    /// lose the position: vectors run elsewhere in their bands than the path that ends on part and drive surface.
     pub(in crate::directed) fn touch(&self, index: usize, sweep: &Sweep<'_>) -> Option<Event> {
         if !matches!(self.checks[index].relation, Relation::To | Relation::On) || sweep.length <= 0.0 {
             return None;
@@ -197,9 +213,10 @@ impl Watcher<'_> {
         let at = |x: f64| self.on_path(index, sweep, x).map(|found| found.1);
         let (x, value) = least([0.0, sweep.length], &at)?;
         let [low, high] = self.room(index);
+        let x = if value < low { first_zero([0.0, x], &at)? } else { x };
         let (vertex, _, side) = self.on_path(index, sweep, x)?;
         let event = Event { check: index, tip: vertex.tip, x, side, grazed: true, is_shallow: false };
-        (value >= low && value <= high).then_some(event)
+        (value <= high).then_some(event)
     }
 
     /// How near a vector comes to the check surface where the path may touch it.

@@ -158,3 +158,19 @@ fn few_places_tell_that_a_valley_is_not_deep_enough() {
     let whole = least([0.0, 1.0], &valley);
     assert_eq!(least_up_to((0.06, 1.0), [0.0, 1.0], &valley), whole);
 }
+
+/// Where a ball comes nearest to a plane the path at rest is along that for long, and vectors cross it before: between what the path does not touch and what
+/// it goes through there is no depth at which no position is found.
+#[test]
+fn a_plane_beside_a_bend_of_the_path_is_met_however_little_that_goes_through_it() {
+    let drive = quadric([1.0, 1.44, 0.3, -9.419, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let part = cylinder(v(0.0, 0.0, -30.0), v(0.0, 1.0, 0.0), 30.0);
+    for k in 0..20 {
+        let check = plane(1.0, 0.0, 0.0, 4.0645 + 0.0002 * f64::from(k));
+        let mut p = Program::new();
+        p.tolerance(0.0, 0.002).cutter(&[1.0, 0.5]).from(0.0, -40.0, 0.0).indirv(0.0, 1.0, 0.0);
+        p.go(&[(Relation::To, &drive), (Relation::To, &part)]).side(DriveSide::Right).indirv(1.0, 0.0, 0.0);
+        p.run(&motion(Turn::Forward, &drive, &[(Relation::To, 1, &check)]));
+        assert!(verify(p.last(), &|| false).expect("a judgement").verified, "{k}: {:?}", p.tip());
+    }
+}
