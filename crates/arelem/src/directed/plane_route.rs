@@ -297,8 +297,8 @@ fn crossing(
             continue;
         }
         // Lines and circles are symmetric: between two positions the tool is the farthest in, or out again, half way.
-        let from = previous.replace(candidate).unwrap_or(Candidate { x: 0.0, level: 0.0 });
-        let between = value(0.5 * (from.x + candidate.x));
+        let from = previous.replace(candidate);
+        let between = value(0.5 * (from.map_or(0.0, |from| from.x) + candidate.x));
         if leaving {
             leaving = false;
             clear = between > 0.0;
@@ -314,7 +314,7 @@ fn crossing(
         if label != check.relation {
             continue;
         }
-        if from.level * candidate.level > 0.0 {
+        if from.is_some_and(|from| on || from.level * candidate.level > 0.0) {
             let limit = prepared.checks[0].touch_limit();
             // Vectors about a circle run elsewhere in the band of the drive surface.
             let unsure = if track.closed() { prepared.drive.band() } else { 0.0 };

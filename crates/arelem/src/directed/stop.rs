@@ -68,10 +68,14 @@ struct Watch {
 
 impl Watch {
     /// How far the tool was in the check surface, or out of it, both from where motions end and from where the tool just touches, if what changes its sign
-    /// does so back again on the side from which it came.
+    /// does so back again on the side from which it came; for ON how far the tool end was beyond it.
     fn depth(&self, working: &Working, (label, side): (Relation, f64)) -> Option<f64> {
-        let rest = if label == Relation::Past { working.rest() } else { -working.rest() };
-        let comes_back = !working.gauge.on && side == self.clear_on;
+        let rest = match label {
+            Relation::On => 0.0,
+            Relation::Past => working.rest(),
+            _ => -working.rest(),
+        };
+        let comes_back = working.gauge.on || side == self.clear_on;
         comes_back.then(|| (self.farthest - rest.max(0.0)).max(0.0))
     }
 
@@ -249,12 +253,13 @@ impl<'a> Watcher<'a> {
     /// comes out of it or into it.
     pub(super) fn awaits(&self, index: usize) -> bool {
         let (watch, relation) = (&self.watches[index], self.checks[index].relation);
-        let waiting = match relation {
-            Relation::Past => Status::Inside,
-            _ => Status::Clear,
+        let is_waiting = match relation {
+            Relation::Past => watch.status == Status::Inside,
+            Relation::On => watch.status != Status::Touching,
+            _ => watch.status == Status::Clear,
         };
         let depth = watch.depth(self.working(index), (relation, watch.clear_on));
-        watch.status == waiting
+        is_waiting
             && depth.is_none_or(|depth| depth > self.working(index).touch_limit())
             && watch.count + 1 == self.checks[index].occurrence.max(1)
     }

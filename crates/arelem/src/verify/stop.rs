@@ -67,7 +67,8 @@ pub(super) fn replay(
         }
         Some(first.max(opposite.at(&p.tip, &p.axis)?.value))
     };
-    let Walked { state, count, since } = walk(sequence, band, &measure, role.relation)?;
+    let zone = Zone { band, near: band + elsewhere(sequence) };
+    let Walked { state, count, since } = walk(sequence, zone, &measure, role.relation)?;
     let end = measure(sequence.points.last()?)?;
     let before = match role.relation {
         Relation::To => State::Clear,
@@ -107,6 +108,21 @@ pub(super) fn replay(
     Some(Err(WrongEvent { found: if arrives { count.certain + 1 } else { 0 } }))
 }
 
+/// How far vectors may run elsewhere in the bands of part and drive surface.
+fn elsewhere(sequence: &CutSequence) -> f64 {
+    let roles = [&sequence.part, &sequence.drive].into_iter().flatten();
+    roles.map(|role| role.inside_tolerance + role.outside_tolerance).sum()
+}
+
+/// What is beyond doubt about a clearance.
+#[derive(Debug, Clone, Copy)]
+struct Zone {
+    /// Beyond it the state of the tool is.
+    band: f64,
+    /// Beyond it, too, that no other vectors along the path would touch.
+    near: f64,
+}
+
 /// What a replay found.
 struct Walked {
     /// At the last position.
@@ -119,7 +135,7 @@ struct Walked {
 /// Follows the path with steps that cannot jump a change of state, and counts events.
 fn walk(
     sequence: &CutSequence,
-    band: f64,
+    Zone { band, near }: Zone,
     measure: &dyn Fn(&ToolPosition) -> Option<f64>,
     relation: Relation,
 ) -> Option<Walked> {
@@ -129,6 +145,8 @@ fn walk(
     let finest = (total / FINEST_STEPS).max(0.5 * band);
     let mut state = State::Touching;
     let mut brushed = false;
+    // Since that state began the tool has been farther away than other vectors may be elsewhere.
+    let mut away = false;
     let mut count = Count::default();
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let mut since = none;
@@ -158,14 +176,19 @@ fn walk(
             });
             match seen {
                 Some(next) if leaps => (state, brushed, since) = (next, false, none),
+                // What comes near again is counted when it has gone away.
+                Some(next) if next == state && value.abs() <= near => {
+                    (brushed, since) = (brushed || away, none)
+                }
                 Some(next) => {
                     record(&mut count, relation, state, next, brushed);
                     (state, brushed, since) = (next, false, none);
+                    away = value.abs() > near;
                 }
                 None => (brushed, since) = (true, [since[0].min(value), since[1].max(value)]),
             }
             let step = if turn > 0.0 { finest.max(move_length / 64.0) } else { finest };
-            let ahead = (value.abs() - band).max(step);
+            let ahead = (value.abs() - near).max(step);
             // In the band what the tool is least or most in the check surface may be at a vertex.
             let ahead = if seen.is_none() { ahead.min(move_length - at) } else { ahead };
             last = Some((value, ahead));

@@ -22,20 +22,20 @@ fn along(
     force: bool,
     (from, side): ([f64; 2], DriveSide),
     drive: (Relation, &Geometry),
-    (relation, stop): (Relation, &Geometry),
+    (relation, occurrence, stop): (Relation, u32, &Geometry),
 ) -> Option<f64> {
     let mut p = Program::new();
     p.tolerance(BAND[0], BAND[1]).cutter(&[2.0]).from(from[0], from[1], 0.0);
     p.run(&MotionCommand::ForceIteration(force));
     p.go(&[drive, (Relation::To, &plane(0.0, 0.0, 1.0, 0.0)), (Relation::On, &plane(1.0, 0.0, 0.0, 0.0))]);
     p.side(side).indirv(1.0, 0.0, 0.0);
-    match p.cut(&motion(Turn::Forward, drive.1, &[(relation, 1, stop)])) {
+    match p.cut(&motion(Turn::Forward, drive.1, &[(relation, occurrence, stop)])) {
         Ok(sequence) => {
             let evidence = verify(&sequence, &|| false).expect("evidence");
             assert!(evidence.verified, "{force} {relation:?} {stop:?}: {evidence:?}");
             Some(sequence.points.last()?.tip.x)
         }
-        Err(MotionFailure::NeverMet { .. }) => None,
+        Err(MotionFailure::NeverMet { .. } | MotionFailure::NoneAhead { .. }) => None,
         Err(failure) => panic!("{force} {relation:?} {stop:?}: {failure:?}"),
     }
 }
@@ -55,7 +55,7 @@ fn past_a_circle_beside_a_line_is_so_beyond_doubt() {
                 force,
                 ([0.0, 0.0], DriveSide::On),
                 (Relation::On, &drive),
-                (relation, &circle(5.0, 0.0, 1.0)),
+                (relation, 1, &circle(5.0, 0.0, 1.0)),
             );
             let sense = if relation == Relation::Past { 1.0 } else { -1.0 };
             let way = (4.0 - (2.0 - depth).powi(2)).max(0.0).sqrt();
@@ -80,7 +80,7 @@ fn past_a_line_beside_a_circle_is_so_on_the_vectors() {
                 force,
                 ([0.0, -15.0], DriveSide::Right),
                 (Relation::To, &circle(0.0, 0.0, 10.0)),
-                (relation, &plane(1.0, 0.0, 0.0, 12.0 - depth)),
+                (relation, 1, &plane(1.0, 0.0, 0.0, 12.0 - depth)),
             );
             match end {
                 Some(end) => assert!(depth > -sum && (end - 11.0 + depth).abs() < sum, "{depth}: {end}"),
@@ -88,4 +88,25 @@ fn past_a_line_beside_a_circle_is_so_on_the_vectors() {
             }
         }
     }
+}
+
+/// The path comes to the second position on its way back, or a turn later.
+#[test]
+fn second_positions_beside_a_circle_are_so_on_the_vectors() {
+    let mut found = 0;
+    for (relation, reach) in [(Relation::To, 12.0), (Relation::On, 11.0)] {
+        for depth in depths() {
+            for force in [false, true] {
+                let end = along(
+                    force,
+                    ([0.0, -15.0], DriveSide::Right),
+                    (Relation::To, &circle(0.0, 0.0, 10.0)),
+                    (relation, 2, &plane(1.0, 0.0, 0.0, reach - depth)),
+                );
+                found += usize::from(end.is_some());
+                assert!(end.is_some() || depth < 2.0 * (BAND[0] + BAND[1]), "{depth} {relation:?} {force}");
+            }
+        }
+    }
+    assert!(found > 0);
 }

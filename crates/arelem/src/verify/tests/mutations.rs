@@ -249,6 +249,27 @@ fn a_position_on_what_was_gone_through_by_little_may_be_the_second() {
     }
 }
 
+/// Vectors may run elsewhere in the bands of part and drive surface than others that touch: where they come near to a check surface by no more than these,
+/// and go away again, that may be counted. What comes no nearer, or has not gone away, is not.
+#[test]
+fn a_position_that_other_vectors_touch_may_be_counted() {
+    for (gap, occurrence, is_position) in
+        [(0.002, 1, true), (0.002, 2, true), (0.002, 3, false), (0.02, 1, true), (0.02, 2, false)]
+    {
+        let mut path = paths::to_circle(Relation::To, occurrence).sequence;
+        path.drive = None;
+        let check = &mut path.stop.as_mut().unwrap().role;
+        (check.surface.geometry, check.side) = (plane([0.0, 1.0, 0.0], 0.0), -1.0);
+        let tip = |x: f64, apart: f64| Vec3::new(x, -0.25 - apart, 0.0);
+        path.start.tip = tip(-1.0, 1.0);
+        let tips = [tip(0.0, gap), tip(0.5, 0.5), tip(1.0, 0.0)];
+        path.points = tips.map(|tip| ToolPosition { tip, ..path.start }).to_vec();
+        // A corner as sharp as that without a drive surface is no path, but that is another rule.
+        let is_told = !rules(&path).contains(&Rule::StopEvent);
+        assert_eq!(is_told, is_position, "{gap} {occurrence}");
+    }
+}
+
 #[test]
 fn the_count_of_positions_is_replayed() {
     for relation in [Relation::To, Relation::On, Relation::Past] {
