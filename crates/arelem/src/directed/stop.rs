@@ -3,6 +3,7 @@
 //! surface the steps are longer: a bound of the second derivative shows that there is no position between two samples.
 
 pub(super) mod graze;
+mod watch;
 
 use std::rc::Rc;
 
@@ -12,6 +13,7 @@ use apt_geometry::{
     surface::Bend,
 };
 
+use self::watch::{Status, Watch, transition};
 use super::{Prepared, is_tangent, proof::lowest};
 use crate::{
     attitude::Sweep,
@@ -38,55 +40,6 @@ const BISECTIONS: u32 = 60;
 const LOOKS_BEFORE_END: i32 = 6;
 /// Distance, relative to the size of the coordinates, at which tool and check surface touch but for rounding.
 const SAME_PLACE: f64 = 1e-9;
-
-/// Where the tool stands to a check surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Status {
-    /// In the band since the start: no position yet.
-    Touching,
-    /// Clear of it; for ON: on the positive side.
-    Clear,
-    /// Cutting into it; for ON: on the negative side.
-    Inside,
-}
-
-/// One check surface being watched.
-#[derive(Debug, Clone, Copy)]
-struct Watch {
-    status: Status,
-    /// How far the function has been from zero since that began, and the side on which the tool was clear then, before or after.
-    farthest: f64,
-    clear_on: f64,
-    count: u32,
-    /// A position was counted before and after which the tool is no farther in the check surface, or out of it, than vectors may be elsewhere in their bands.
-    is_shallow: bool,
-    /// A position and the radius around it in which nothing happens.
-    quiet: (Vec3, f64),
-    /// In its band the path was still coming nearer at the end of the last vector.
-    falling: bool,
-}
-
-impl Watch {
-    /// How far the tool was in the check surface, or out of it, both from where motions end and from where the tool just touches, if what changes its sign
-    /// does so back again on the side from which it came; for ON how far the tool end was beyond it.
-    fn depth(&self, working: &Working, (label, side): (Relation, f64)) -> Option<f64> {
-        let rest = match label {
-            Relation::On => 0.0,
-            Relation::Past => working.rest(),
-            _ => -working.rest(),
-        };
-        let comes_back = working.gauge.on || side == self.clear_on;
-        comes_back.then(|| (self.farthest - rest.max(0.0)).max(0.0))
-    }
-
-    /// Notes the next sample, the first one after a change or one more.
-    fn go_on(&mut self, changes: bool, (value, side): (f64, f64)) {
-        if changes {
-            (self.farthest, self.clear_on) = (0.0, side);
-        }
-        self.farthest = self.farthest.max(value.abs());
-    }
-}
 
 /// A stopping position found on a cut vector.
 #[derive(Debug, Clone, Copy)]
@@ -156,6 +109,7 @@ impl<'a> Watcher<'a> {
             Watch {
                 status,
                 farthest: value.abs(),
+                farthest_at: prepared.tip,
                 clear_on,
                 count: 0,
                 is_shallow: false,
@@ -259,8 +213,9 @@ impl<'a> Watcher<'a> {
             _ => watch.status == Status::Clear,
         };
         let depth = watch.depth(self.working(index), (relation, watch.clear_on));
+        let comes_out = watch.status == Status::Inside;
         is_waiting
-            && depth.is_none_or(|depth| depth > self.working(index).touch_limit())
+            && depth.is_none_or(|depth| !self.is_touch(index, (depth, watch.farthest_at, comes_out)))
             && watch.count + 1 == self.checks[index].occurrence.max(1)
     }
 
@@ -336,7 +291,9 @@ impl<'a> Watcher<'a> {
             // In a check surface the tool may already be nearer to its other side.
             let clear_on = if next > 0.0 { side } else { side_before };
             let depth = label.and_then(|label| watch.depth(working, (label, clear_on)));
-            watch.go_on(label.is_some(), (next, clear_on));
+            let was_at = watch.farthest_at;
+            watch.go_on(label.is_some(), (next, clear_on), &tip);
+            let depth = depth.map(|depth| (depth, was_at, next > 0.0));
             let event = crossing.and_then(|found| self.count(index, &mut watch, sweep, (found, depth)));
             if event.is_some() {
                 return (event, watch);
@@ -368,22 +325,32 @@ impl<'a> Watcher<'a> {
         (None, watch)
     }
 
-    /// Counts a position at a distance along a vector, before which the tool was so far in the check surface or out of it; the stop if it is the last one.
+    /// Whether a tool that was so far in the check surface, or out of it, at a place, and comes out of it or into it, has only touched it: it is not past
+    /// it then, or has not come to it anew. Nor is it where the vectors alone go to and fro in its band, elsewhere in theirs than the path at rest.
+    fn is_touch(&self, index: usize, (depth, place, comes_out): (f64, Vec3, bool)) -> bool {
+        let working = self.working(index);
+        let is_other = || self.at_rest(index, &place).is_some_and(|value| (value > 0.0) == comes_out);
+        depth <= working.touch_limit() || depth <= working.inside.max(working.outside) && is_other()
+    }
+
+    /// Counts a position at a distance along a vector; the stop if it is the last one. Before it the tool was so far in the check surface, or out of it, at a
+    /// place, and comes out of it or into it.
     fn count(
         &mut self,
         index: usize,
         watch: &mut Watch,
         sweep: &Sweep<'_>,
-        ((x, side), depth): ((f64, f64), Option<f64>),
+        ((x, side), before): ((f64, f64), Option<(f64, Vec3, bool)>),
     ) -> Option<Event> {
         let tip = sweep.at(x).0;
-        // A touch: the tool is not past the check surface then, or has not come to it anew.
-        if let Some(depth) = depth.filter(|depth| *depth <= self.working(index).touch_limit()) {
-            self.touched = Some((depth, tip, index));
-            return None;
+        if let Some(before) = before.filter(|before| before.0 <= self.near(index)) {
+            if self.is_touch(index, before) {
+                self.touched = Some((before.0, tip, index));
+                return None;
+            }
+            watch.is_shallow = true;
         }
         watch.count += 1;
-        watch.is_shallow |= depth.is_some_and(|depth| depth <= self.near(index));
         let is_shallow = watch.is_shallow;
         let is_last = watch.count >= self.checks[index].occurrence.max(1);
         is_last.then_some(Event { check: index, tip, x, side, grazed: false, is_shallow })
@@ -564,27 +531,6 @@ impl Trail {
         (self.x, self.value, self.side) = (x, value, side);
         self.least = self.least.min(value.abs());
         valley
-    }
-}
-
-/// Follows the sign; the relation that is reached when it changes.
-fn transition(status: &mut Status, value: f64, band: f64, on: bool) -> Option<Relation> {
-    let now = if value > 0.0 { Status::Clear } else { Status::Inside };
-    match (*status, now) {
-        (Status::Touching, _) if value.abs() <= band => None,
-        (Status::Touching, _) => {
-            *status = now;
-            None
-        }
-        (Status::Clear, Status::Inside) => {
-            *status = now;
-            Some(if on { Relation::On } else { Relation::To })
-        }
-        (Status::Inside, Status::Clear) => {
-            *status = now;
-            Some(if on { Relation::On } else { Relation::Past })
-        }
-        _ => None,
     }
 }
 

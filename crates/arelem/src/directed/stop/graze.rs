@@ -1,12 +1,12 @@
 //! Check surfaces that the path touches without crossing them: where it comes nearest, and in tolerance, the tool is
 //! properly positioned, which is what TO and ON ask for (language reference 6.6).
 
-use apt_geometry::motion::Relation;
+use apt_geometry::{Vec3, motion::Relation};
 
 use super::{BISECTIONS, Event, Status, Trail, Watch, Watcher};
 use crate::{
     attitude::Sweep,
-    directed::march::Vertex,
+    directed::{Prepared, march::Vertex},
     position::{self, Condition},
 };
 
@@ -234,17 +234,31 @@ impl Watcher<'_> {
         [-working.inside - working.rest(), working.outside - working.rest()]
     }
 
+    /// The function where the path at rest on part and drive surface is next to a place, if that is not farther away than vectors may be.
+    pub(super) fn at_rest(&self, index: usize, place: &Vec3) -> Option<f64> {
+        let tip = self.rest_at(place)?;
+        let tool = self.prepared.attitude.tool_at(&tip).ok()?;
+        let is_near = (tip - place).norm() <= self.near(index);
+        is_near.then(|| self.value(index, &tool, &tip).0)
+    }
+
+    /// The position at rest on part and drive surface to which corrections lead from a place.
+    fn rest_at(&self, place: &Vec3) -> Option<Vec3> {
+        let Prepared { attitude, part, drive, .. } = self.prepared;
+        let conditions = [
+            Condition::Clearance(&part.gauge, part.rest()),
+            Condition::Clearance(&drive.gauge, drive.rest()),
+        ];
+        Some(position::solve(attitude, &conditions, place).ok()?.tip)
+    }
+
     /// The position on part and drive surface next to a place of a vector, how far the check surface is from its relation
     /// there, and the side of it. A position that lies elsewhere along the vector is not next to the place: corrections lead across the path,
     /// unless they are lost.
     fn on_path(&self, index: usize, sweep: &Sweep<'_>, x: f64) -> Option<(Vertex, f64, f64)> {
         let prepared = self.prepared;
-        let conditions = [
-            Condition::Clearance(&prepared.part.gauge, prepared.part.rest()),
-            Condition::Clearance(&prepared.drive.gauge, prepared.drive.rest()),
-        ];
         let place = sweep.at(x).0;
-        let tip = position::solve(&prepared.attitude, &conditions, &place).ok()?.tip;
+        let tip = self.rest_at(&place)?;
         if (tip - place).dot(&sweep.direction).abs() > self.near(index) {
             return None;
         }
