@@ -16,6 +16,8 @@ use crate::{
 
 /// Bound of the iteration.
 const MAX_ITERATIONS: u32 = 60;
+/// How many places of a correction, each half as far as the one before, may have no axis: nearer ones lead but up to the edge of what has.
+const MOST_WITHOUT_AXIS: u32 = 3;
 /// How often a correction that makes things worse is halved.
 const MAX_HALVINGS: u32 = 10;
 /// The same for one of many tries: one that is to help less leads nowhere soon.
@@ -358,10 +360,16 @@ impl Search<'_> {
     ) -> bool {
         let (worst, _) = here.rows.greatest();
         let mut share = 1.0;
+        let mut without_axis = 0;
         for _ in 0..=halvings {
             self.evaluate(&(here.tip + step * share), manner, next);
-            if next.rows.greatest().0 < worst {
+            let left = next.rows.greatest().0;
+            if left < worst {
                 return true;
+            }
+            without_axis += u32::from(left.is_nan());
+            if without_axis > MOST_WITHOUT_AXIS {
+                return false;
             }
             share *= 0.5;
         }

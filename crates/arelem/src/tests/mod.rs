@@ -39,6 +39,7 @@ mod troughs;
 mod turning;
 mod turning_begins;
 mod turning_rings;
+mod unsettled;
 mod vertices;
 mod walls;
 mod worked;

@@ -27,19 +27,27 @@ const DIFFERENCE: f64 = 1e-6;
 const LONGEST_STEP: f64 = 0.3;
 /// How often one that does not lead nearer is halved.
 const HALVINGS: u32 = 6;
+/// How near to a place from which Newton's method led no nearer, relative to what was wrong there, another one is the same.
+const SAME_PLACE: f64 = 0.1;
 
 impl Law {
     /// The normal at the contact, which moves with the axis that stands on it: from that at the tool end, and where that does not settle, as beside a
-    /// corner circle that lies nearly along the surface, from that at the place of the circle which is nearest to the surface.
+    /// corner circle that lies nearly along the surface, from that at the place of the circle which is nearest to the surface, as long as that leads to
+    /// other places from which nothing leads nearer than those before.
     pub(super) fn settled(&self, tool: &Tool, tip: &Vec3, other: Option<&Vec3>) -> Result<Bent, AxisFailure> {
+        let mut in_vain = Vec::new();
         let mut start = self.base.normal(tip);
-        let mut found = self.settled_from(start, tool, tip, other);
+        let mut found = self.settled_from(start, &mut in_vain, (tool, tip, other));
         for _ in 0..STARTS {
             if !matches!(found, Err(AxisFailure::NotSettled { change }) if change.is_finite()) {
                 break;
             }
             start = self.normal_nearest(tool, tip, &self.towards(&start, tip, other)?)?;
-            found = self.settled_from(start, tool, tip, other).or(found);
+            let known = in_vain.len();
+            found = self.settled_from(start, &mut in_vain, (tool, tip, other)).or(found);
+            if found.is_err() && in_vain.len() == known {
+                break;
+            }
         }
         found
     }
@@ -63,13 +71,13 @@ impl Law {
     }
 
     /// The same from one normal on: each is taken where Newton's method leads; where that does not
-    /// come nearer, where the last one leads as long as that comes nearer fast, and then where Newton's method with differences does.
+    /// come nearer, where the last one leads as long as that comes nearer fast, and then where Newton's method with differences does. Where this leads no
+    /// nearer from a place from which it led no nearer before, the iteration would go round.
     fn settled_from(
         &self,
         start: Vec3,
-        tool: &Tool,
-        tip: &Vec3,
-        other: Option<&Vec3>,
+        in_vain: &mut Vec<(Vec3, f64)>,
+        (tool, tip, other): (&Tool, &Vec3, Option<&Vec3>),
     ) -> Result<Bent, AxisFailure> {
         let led = |from: Vec3| -> Result<Led, AxisFailure> {
             go_on(tool)?;
@@ -96,6 +104,13 @@ impl Law {
             let nearer = if is_slow { here.nearer(&led)? } else { None };
             if nearer.is_none() && is_slow && here.change <= ACCEPTABLE {
                 return Ok((here.to, here.bend));
+            }
+            if nearer.is_none() && is_slow {
+                let (from, change) = (here.from, here.change);
+                if in_vain.iter().any(|(place, wrong)| (from - place).norm() <= SAME_PLACE * wrong) {
+                    break;
+                }
+                in_vain.push((from, change));
             }
             let next = nearer.map_or_else(|| led(here.to), Ok)?;
             is_slow |= next.change > SLOW * here.change;
