@@ -5,7 +5,7 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 use apt_cldata::record::POSITIONS_A_UNIT;
 use apt_geometry::{Vec3, patience::Patience};
 
-use crate::machine::ArcPlane;
+use crate::{format::NumberFormat, machine::ArcPlane};
 
 /// A chord that turns more than this about the centre does not tell which way round it goes.
 const LARGEST_CHORD_ANGLE: f64 = 0.75 * PI;
@@ -13,6 +13,10 @@ const LARGEST_CHORD_ANGLE: f64 = 0.75 * PI;
 const NEAR_FULL_TURN: f64 = 1.5 * PI;
 /// Distance of ends, in resolutions, below which they nearly meet.
 const NEAR_RESOLUTIONS: f64 = 100.0;
+/// Share of a radius that computing it may lose.
+const ROUNDED_OFF: f64 = 1e-12;
+/// Sweep up to which the middle of an arc between its ends is off by less than its radius is.
+const QUARTER_TURN: f64 = 0.5 * PI;
 
 /// What an arc has to keep to. Lengths in the unit of the tape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +51,80 @@ pub(crate) struct Arc {
     pub(crate) counterclockwise: bool,
     /// Whether start and end are one point in the plane.
     pub(crate) full_turn: bool,
+}
+
+impl Arc {
+    /// Its radius, from where it starts.
+    pub(crate) fn radius(&self, start: &Vec3, plane: ArcPlane) -> f64 {
+        let [u, v, _] = plane_axes(plane);
+        (start[u] - self.center[u]).hypot(start[v] - self.center[v])
+    }
+
+    /// Signed angle from its start to its end, seen against the third axis.
+    pub(crate) fn sweep(&self, start: &Vec3, end: &Vec3, plane: ArcPlane) -> f64 {
+        let [u, v, _] = plane_axes(plane);
+        let (a, b) = (start - self.center, end - self.center);
+        let angle = (a[u] * b[v] - a[v] * b[u]).atan2(a[u] * b[u] + a[v] * b[v]);
+        match (self.full_turn, self.counterclockwise) {
+            (true, true) => TAU,
+            (true, false) => -TAU,
+            (false, true) => angle.rem_euclid(TAU),
+            (false, false) => -(-angle).rem_euclid(TAU),
+        }
+    }
+
+    /// The place at a share of it.
+    fn at(&self, (start, end): (&Vec3, &Vec3), plane: ArcPlane, share: f64) -> Vec3 {
+        let [u, v, w] = plane_axes(plane);
+        let (sine, cosine) = (self.sweep(start, end, plane) * share).sin_cos();
+        let arm = start - self.center;
+        let mut place = self.center;
+        place[u] += arm[u] * cosine - arm[v] * sine;
+        place[v] += arm[u] * sine + arm[v] * cosine;
+        place[w] = start[w] + (end[w] - start[w]) * share;
+        place
+    }
+
+    /// The ends of the equal parts, as the control reads places, of an arc that is told by its radius: no more than it takes for each to be told.
+    pub(crate) fn told_by_radius(
+        &self,
+        (start, end): (&Vec3, &Vec3),
+        plane: ArcPlane,
+        (format, tolerance): (NumberFormat, f64),
+        rounded: &dyn Fn(Vec3) -> Vec3,
+    ) -> Vec<Vec3> {
+        let sweep = self.sweep(start, end, plane).abs();
+        let radius = self.radius(start, plane);
+        let [u, v, _] = plane_axes(plane);
+        let divided = |count: f64| {
+            let inner = (1..count as usize).map(|part| self.at((start, end), plane, part as f64 / count));
+            inner.map(rounded).chain([*end]).collect::<Vec<Vec3>>()
+        };
+        let is_told = |places: &[Vec3]| {
+            let starts = [start].into_iter().chain(places);
+            starts.zip(places).all(|(from, to)| {
+                is_told(distance([from[u], from[v]], [to[u], to[v]]), radius, format, tolerance)
+            })
+        };
+        let most = (sweep / QUARTER_TURN).ceil();
+        let mut count = (sweep / PI - ROUNDED_OFF).ceil().max(1.0);
+        loop {
+            let places = divided(count);
+            if count >= most || is_told(&places) {
+                return places;
+            }
+            count += 1.0;
+        }
+    }
+}
+
+/// Whether a control finds an arc of up to half a turn over a chord from the radius as it reads it: the nearer the arc is to half a turn, the farther off is
+/// its middle for what the last decimal is off, and a radius of less than half the chord has no arc.
+fn is_told(chord: f64, radius: f64, format: NumberFormat, tolerance: f64) -> bool {
+    let Ok(told) = format.rounded(radius) else { return false };
+    let half = chord / 2.0;
+    let height = |radius: f64| radius - (radius * radius - half * half).max(0.0).sqrt();
+    half - told <= ROUNDED_OFF * half && (height(told) - height(radius)).abs() <= tolerance
 }
 
 /// Indices of the coordinates of a plane, so that the first turns to the second counter-clockwise about the third.

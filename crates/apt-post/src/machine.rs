@@ -334,6 +334,9 @@ pub enum ArcCenter {
     Incremental,
     /// In coordinates.
     Absolute,
+    /// Not at all: `R` is the radius of an arc of up to half a turn. What is longer is divided, and so is what comes so near to half a turn that the
+    /// last decimal of the radius moves its middle by more than the tolerance.
+    Radius,
 }
 
 /// A plane of arcs.
@@ -408,6 +411,8 @@ pub struct Limits {
 
 /// Registers that every mill needs.
 const NEEDED: [&str; 10] = ["N", "G", "X", "Y", "Z", "I", "J", "K", "F", "S"];
+/// The register of the radius of an arc, and of the plane to which a cycle goes back.
+pub(crate) const RADIUS: &str = "R";
 
 impl MachineDefinition {
     /// Reads a definition file.
@@ -436,6 +441,9 @@ impl MachineDefinition {
             if !self.registers.contains_key(register) {
                 return Err(MachineError::MissingRegister { register: register.to_owned() });
             }
+        }
+        if self.arc.center == ArcCenter::Radius && !self.registers.contains_key(RADIUS) {
+            return Err(MachineError::MissingRegister { register: RADIUS.to_owned() });
         }
         for register in &self.block.order {
             self.known("block.order", register)?;

@@ -8,7 +8,7 @@ use apt_cldata::{
     record::{ClKind, ClRecord},
     text::read_text,
 };
-use apt_post::{MachineDefinition, PostOptions, Tape, machine, post};
+use apt_post::{MachineDefinition, MachineError, PostOptions, Tape, definition_file, machine, post};
 use interpreter::{Call, TOLERANCE, follow, interpret, near};
 use proptest::prelude::*;
 
@@ -22,8 +22,20 @@ fn records(text: &str) -> Vec<ClRecord> {
     records
 }
 
+/// The mill, told no centres of arcs but their radii.
+fn mill_by_radius() -> MachineDefinition {
+    let text = definition_file("linuxcnc-mill3").unwrap();
+    let own = text.replace("center = \"incremental\"", "center = \"radius\"");
+    assert_ne!(own, text);
+    MachineDefinition::from_toml(&own).unwrap()
+}
+
 fn tape(text: &str) -> Tape {
-    let tape = post(&records(text), &mill(), &PostOptions::default());
+    tape_for(&mill(), text)
+}
+
+fn tape_for(machine: &MachineDefinition, text: &str) -> Tape {
+    let tape = post(&records(text), machine, &PostOptions::default());
     assert!(tape.is_ok(), "{:?}\n{}", tape.findings, tape.text());
     tape
 }
@@ -277,6 +289,72 @@ fn a_tape_with_an_error_is_not_ok_and_the_interpreter_agrees() {
     assert!(!interpreter::run(&made.text(), &[]).contains("PROGRAM_END"));
 }
 
+/// Arcs one after another about one centre are one: what is told by radii is divided between positions of the CL file, too.
+fn joined(calls: &[Call]) -> Vec<Call> {
+    let mut joined: Vec<Call> = Vec::new();
+    for call in calls.iter().filter(|call| !matches!(call, Call::FeedRate(_))) {
+        if let Call::Arc { end, center, turns, axis } = call
+            && let Some(Call::Arc { end: last, center: before, turns: same, axis: across }) =
+                joined.last_mut()
+            && (turns, axis) == (same, across)
+            && (0..3).all(|k| k == *axis || (center[k] - before[k]).abs() <= RADIUS_TOLERANCE)
+        {
+            *last = *end;
+        } else {
+            joined.push(call.clone());
+        }
+    }
+    joined
+}
+
+/// How far the last decimals of ends and radii, and the tolerance of the machine, move the centre of an arc.
+const RADIUS_TOLERANCE: f64 = 0.01;
+
+#[test]
+fn arcs_by_radius_are_divided_where_a_radius_does_not_tell_them() {
+    let start = "UNITS/MM\nLOADTL/1\nSPINDL/1000,CLW\nRAPID\nGOTO/20,0,10\nFEDRAT/2,INVERS\nGOTO/20,0,0\n";
+    // Sweep in degrees, rise, and the blocks that it takes: where the ends of half a turn are rounded the radius may be less than half the chord.
+    for (sweep, rise, blocks) in [
+        (90.0_f64, 0.0, 1),
+        (150.0, 3.0, 1),
+        (179.9, 0.0, 2),
+        (180.0, 0.0, 1),
+        (200.0, 0.0, 2),
+        (-270.0, 1.0, 2),
+        (-360.0, 0.0, 2),
+    ] {
+        let (sine, cosine) = sweep.to_radians().sin_cos();
+        let text = format!(
+            "{start}MOVARC/0,0,0,0,0,1,20,ANGLE,{sweep}\nGOTO/{},{},{rise}\nFINI\n",
+            20.0 * cosine,
+            20.0 * sine
+        );
+        let made = tape_for(&mill_by_radius(), &text).text();
+        let calls = interpret(&made, &[1]);
+        let (_, arcs) = follow(&joined(&calls), &path(&records(&text)), RADIUS_TOLERANCE);
+        let lines: Vec<&str> = made.lines().filter(|line| line.contains(" R")).collect();
+        assert_eq!((arcs, lines.len()), (1, blocks), "{sweep}: {made}");
+        // An arc that is divided takes the time that the program tells.
+        assert!(
+            lines.iter().all(|line| line.contains("R20. ") && line.contains(&format!(" F{}.", 2 * blocks))),
+            "{made}"
+        );
+        assert!(!made.contains(" I") && !made.contains(" J"), "{made}");
+    }
+}
+
+#[test]
+fn a_machine_that_is_told_radii_has_a_register_for_them() {
+    let text =
+        definition_file("linuxcnc-mill3").unwrap().replace("center = \"incremental\"", "center = \"radius\"");
+    let without: String =
+        text.lines().filter(|line| !line.starts_with("R = ")).map(|line| format!("{line}\n")).collect();
+    assert_eq!(
+        MachineDefinition::from_toml(&without),
+        Err(MachineError::MissingRegister { register: "R".to_owned() })
+    );
+}
+
 /// A step of a random program.
 #[derive(Debug, Clone)]
 enum Step {
@@ -343,5 +421,8 @@ proptest! {
         let calls = interpret(&tape(&text).text(), &[1]);
         let (_, arcs) = follow(&calls, &path(&records(&text)), 0.005 * shrink + TOLERANCE);
         prop_assert!(arcs >= turns, "{arcs} arcs of {turns}\n{text}");
+        let calls = interpret(&tape_for(&mill_by_radius(), &text).text(), &[1]);
+        let (_, arcs) = follow(&joined(&calls), &path(&records(&text)), RADIUS_TOLERANCE * shrink + TOLERANCE);
+        prop_assert!(arcs >= turns, "{arcs} arcs of {turns} by radius\n{text}");
     }
 }

@@ -8,7 +8,7 @@ use crate::{
     arc::{self, Arc, ArcLimits},
     control::{Values, Word},
     finding::PostFindingKind,
-    machine::{ArcCenter, ArcPlane},
+    machine::{ArcCenter, ArcPlane, RADIUS},
     words::FeedMode,
 };
 
@@ -417,8 +417,29 @@ impl Engine<'_> {
         self.control.motion(&before, codes, words);
     }
 
-    /// An arc to a rounded position.
+    /// An arc to a rounded position: of one block, or of as many as a control takes that is told no centre.
     fn arc_to(&mut self, end: Vec3, plane: ArcPlane, fitted: &Arc) {
+        let Some(start) = self.position else { return };
+        let rules = &self.machine.arc;
+        let inch = self.control.units == apt_cldata::record::Units::Inches;
+        let radius = self.machine.registers.get(RADIUS).filter(|_| rules.center == ArcCenter::Radius);
+        let ends = match radius {
+            Some(register) => {
+                let own = self.arc_tolerance.unwrap_or_else(|| self.tape_length(rules.tolerance_mm));
+                let rounded = |place| self.rounded(place);
+                fitted.told_by_radius((&start, &end), plane, (register.format(inch), own), &rounded)
+            }
+            None => vec![end],
+        };
+        let parts = ends.len();
+        let arc = Arc { full_turn: fitted.full_turn && parts == 1, ..*fitted };
+        for part in ends {
+            self.part_of_arc(part, plane, (&arc, fitted.radius(&start, plane)), parts);
+        }
+    }
+
+    /// One of so many equal parts of an arc with a radius, to a rounded position.
+    fn part_of_arc(&mut self, end: Vec3, plane: ArcPlane, (arc, radius): (&Arc, f64), parts: usize) {
         let Some(start) = self.position else { return };
         self.work_offset_now();
         self.check_travel(end);
@@ -431,34 +452,31 @@ impl Engine<'_> {
             ArcPlane::Zx => &codes.plane_zx,
             ArcPlane::Yz => &codes.plane_yz,
         };
-        let turn = if fitted.counterclockwise { &codes.counterclockwise } else { &codes.clockwise };
+        let turn = if arc.counterclockwise { &codes.counterclockwise } else { &codes.clockwise };
+        let forced = |register, value| Word { register, value, force: true };
         let mut words = vec![
-            Word { register: AXES[u], value: end[u], force: true },
-            Word { register: AXES[v], value: end[v], force: true },
+            forced(AXES[u], end[u]),
+            forced(AXES[v], end[v]),
             Word { register: AXES[w], value: end[w], force: false },
         ];
-        for axis in [u, v] {
-            let value = match machine.arc.center {
-                ArcCenter::Incremental => fitted.center[axis] - start[axis],
-                ArcCenter::Absolute => fitted.center[axis],
-            };
-            words.push(Word { register: CENTERS[axis], value, force: true });
+        match machine.arc.center {
+            ArcCenter::Incremental => {
+                words.extend([u, v].map(|axis| forced(CENTERS[axis], arc.center[axis] - start[axis])));
+            }
+            ArcCenter::Absolute => {
+                words.extend([u, v].map(|axis| forced(CENTERS[axis], arc.center[axis])));
+            }
+            ArcCenter::Radius => words.push(forced(RADIUS, radius)),
         }
-        let (feed_code, feed) = self.feed_words(arc_length(start, end, fitted, [u, v, w]));
+        let sweep = arc.sweep(&start, &end, plane);
+        let length = (sweep * radius).hypot(end[w] - start[w]);
+        let (feed_code, mut feed) = self.feed_words(length);
+        if let Some(word) = feed.as_mut().filter(|_| self.feed.is_some_and(Feed::is_time)) {
+            // The time of the program is that of the whole arc.
+            word.value = (word.value * parts as f64).min(self.control.greatest(word.register));
+        }
         words.extend(feed);
         self.cut(&[], feed_code, &[plane_code, turn], &words);
         self.position = Some(end);
     }
-}
-
-fn arc_length(start: Vec3, end: Vec3, fitted: &Arc, [u, v, w]: [usize; 3]) -> f64 {
-    let (a, b) = (start - fitted.center, end - fitted.center);
-    let angle = (a[u] * b[v] - a[v] * b[u]).atan2(a[u] * b[u] + a[v] * b[v]);
-    let turn = std::f64::consts::TAU;
-    let sweep = match (fitted.full_turn, fitted.counterclockwise) {
-        (true, _) => turn,
-        (false, true) => angle.rem_euclid(turn),
-        (false, false) => (-angle).rem_euclid(turn),
-    };
-    (sweep * a[u].hypot(a[v])).hypot(end[w] - start[w])
 }
