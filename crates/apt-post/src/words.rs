@@ -105,6 +105,13 @@ pub(crate) enum CycleFeed {
     ThreadsPerInch(f64),
 }
 
+impl CycleFeed {
+    /// Whether it tells how far the tool goes in a turn of the spindle.
+    pub(crate) fn is_per_turn(self) -> bool {
+        matches!(self, CycleFeed::ThreadsPerInch(_) | CycleFeed::Rate(_, FeedMode::PerRevolution, _))
+    }
+}
+
 /// Where the tool goes between holes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Retract {

@@ -239,3 +239,64 @@ fn deep_drills_as_the_system_of_the_file_means_it() {
         assert!(text(false).contains("G83 X10.") && text(false).contains("G83 X20."), "{}", text(false));
     }
 }
+
+/// All blocks of a tape without sequence numbers, from the first hole on.
+fn all_blocks(name: &str, statements: &str) -> Vec<String> {
+    let tape = tape_of(name, "CLW", statements);
+    assert_eq!(told(&tape), Vec::<&PostFindingKind>::new(), "{name}\n{}", tape.text());
+    let text = tape.text();
+    text.lines().filter_map(|line| line.split_once(' ')).map(|(_, rest)| rest.to_owned()).collect()
+}
+
+/// A thread has one pitch: where the spindle turns faster from one hole to the next the feed does, too, and the control is told both anew out of the cycle.
+#[test]
+fn a_tap_keeps_its_pitch_when_the_spindle_changes_its_speed() {
+    for feed in ["MMPM,900", "MMPR,1.5", "TPI,16.93333333333333"] {
+        let statements = format!(
+            "CYCLE/TAP,DEPTH,10,RAPTO,3,{feed}\nGOTO/10,0,0\nSPINDL/800,CLW\nGOTO/20,0,0\nGOTO/30,0,0\n"
+        );
+        for (name, pre) in [("fanuc-mill3", Some("M29 S800")), ("haas-mill3", None)] {
+            let blocks = all_blocks(name, &statements);
+            let faster = blocks.iter().position(|block| block == "S800 M3");
+            let faster = faster.unwrap_or_else(|| panic!("{name}: {blocks:#?}"));
+            assert!(
+                blocks[faster - 2].contains("G84 X10.") && blocks[faster - 2].contains("F900."),
+                "{name}: {blocks:#?}"
+            );
+            assert_eq!(blocks[faster - 1], "G80", "{name}: {blocks:#?}");
+            let next: Vec<&str> = blocks[faster + 1..].iter().map(String::as_str).collect();
+            let next = match pre {
+                Some(pre) => next.strip_prefix(&[pre]),
+                None => Some(next.as_slice()),
+            };
+            let Some([tapped, after, ..]) = next else { panic!("{name}: {blocks:#?}") };
+            assert!(tapped.contains("G84 X20.") && tapped.ends_with("F1200."), "{name}: {blocks:#?}");
+            assert_eq!(*after, "X30.", "{name}: {blocks:#?}");
+        }
+        let taps = all_blocks("linuxcnc-mill3", &statements);
+        let taps: Vec<&String> = taps.iter().filter(|block| block.contains("G33.1")).collect();
+        assert!(taps.len() == 3 && taps.iter().all(|block| block.ends_with("K1.5")), "{taps:?}");
+    }
+}
+
+/// What a cycle goes in a revolution it goes at every speed.
+#[test]
+fn a_feed_per_revolution_of_a_cycle_follows_the_spindle() {
+    let statements =
+        "CYCLE/DRILL,DEPTH,10,RAPTO,3,MMPR,.1\nGOTO/10,0,0\nSPINDL/800,CLW\nGOTO/20,0,0\nGOTO/30,0,0\n";
+    for name in MACHINES {
+        let blocks = all_blocks(name, statements);
+        for (hole, feed) in [("X10.", Some("F60.")), ("X20.", Some("F80.")), ("X30.", None)] {
+            let block = blocks.iter().find(|block| {
+                block.split(' ').any(|word| word == hole || word == hole.trim_end_matches('.'))
+            });
+            let block = block.unwrap_or_else(|| panic!("{name}: no {hole} in {blocks:#?}"));
+            let written = block.split(' ').find(|word| word.starts_with('F'));
+            assert_eq!(
+                written.map(|feed| feed.trim_end_matches('.')),
+                feed.map(|feed| feed.trim_end_matches('.')),
+                "{name}: {block}"
+            );
+        }
+    }
+}

@@ -51,6 +51,8 @@ pub(super) struct Cycle {
     pub(super) step: Option<f64>,
     pub(super) dwell: f64,
     pitch: Option<f64>,
+    /// Whether it goes as far in a turn of the spindle at any speed, by the pitch: a thread does, and what is told per revolution.
+    per_turn: bool,
     /// How far the tool steps aside at the bottom, along X and Y.
     pub(super) shift: Option<(f64, f64)>,
     /// Where the spindle stops for it, in degrees.
@@ -164,6 +166,7 @@ impl Engine<'_> {
         let scale = self.scale;
         let (depth, clearance, step) = self.cycle_lengths(arguments, &order, &name)?;
         let (feed, pitch) = self.cycle_feed(arguments, order.feed, is_tap(&name))?;
+        let per_turn = is_tap(&name) || order.feed.is_some_and(CycleFeed::is_per_turn);
         let dwell = self.cycle_dwell(arguments, &order)?;
         let shift = self.cycle_shift(arguments, &order, &name)?;
         let times = self.cycle_times(arguments, &order, &name)?;
@@ -185,6 +188,7 @@ impl Engine<'_> {
             step,
             dwell,
             pitch,
+            per_turn,
             shift,
             orientation: order.orientation,
             times,
@@ -323,6 +327,11 @@ impl Engine<'_> {
         }
     }
 
+    /// Revolutions per minute as the control reads them.
+    fn speed_on_tape(&self) -> Option<f64> {
+        self.spindle.speed.map(|speed| self.control.rounded("S", speed)).filter(|speed| *speed > 0.0)
+    }
+
     /// What the tool goes in a minute at the feed in force; none of an inverse time, which tells nothing of a hole.
     fn feed_in_force(&self) -> Option<f64> {
         let feed = self.feed?;
@@ -340,7 +349,7 @@ impl Engine<'_> {
         feed: Option<CycleFeed>,
         tap: bool,
     ) -> Option<(Option<f64>, Option<f64>)> {
-        let speed = self.spindle.speed.filter(|speed| *speed > 0.0);
+        let speed = self.speed_on_tape();
         let current = self.feed_in_force();
         let (rate, pitch) = match feed {
             None => (current, None),
@@ -468,8 +477,9 @@ impl Engine<'_> {
             self.cycle = Some(cycle);
             return;
         }
-        // What a tap goes is a matter of its thread.
-        if cycle.feed_in_force && !cycle.taps() {
+        if let (true, Some(pitch), Some(speed)) = (cycle.per_turn, cycle.pitch, self.speed_on_tape()) {
+            cycle.feed = Some(pitch * speed);
+        } else if cycle.feed_in_force && !cycle.taps() {
             cycle.feed = self.feed_in_force();
         }
         if cycle.feed.is_none() {

@@ -2,7 +2,7 @@
 
 use apt_cldata::record::{ClWord, Units};
 
-use super::{Engine, MILLIMETERS_PER_INCH, PendingCompensation, Spindle};
+use super::{Engine, MILLIMETERS_PER_INCH, PendingCompensation, Spindle, hole::Cycle};
 use crate::{control::Values, finding::PostFindingKind, words::Arguments};
 
 /// Largest tool number that is taken.
@@ -94,6 +94,10 @@ impl Engine<'_> {
             return self.find(kind);
         }
         self.spindle_reported = false;
+        // A control that taps goes by the speed that the cycle began with.
+        if self.cycle.as_ref().is_some_and(Cycle::taps) {
+            self.leave_cycle();
+        }
         let machine = self.machine;
         if arguments.has("OFF") {
             self.control.code(&machine.codes.spindle_off);
