@@ -404,3 +404,19 @@ fn a_stated_circle_is_made_of_arcs_up_to_its_end() {
         }
     }
 }
+
+/// A rapid aside is a motion in the plane of the compensation: it ends there, and not with the next cut or never.
+#[test]
+fn compensation_ends_on_a_rapid() {
+    let statements = "FEDRAT/100,MMPM\nRAPID\nGOTO/0,0,5\nCUTCOM/LEFT,1\nGOTO/0,20,5\nGOTO/20,20,5\nCUTCOM/OFF\n\
+                      RAPID\nGOTO/40,0,30\nGOTO/50,0,5\n";
+    for name in MACHINES {
+        let blocks = blocks(name, statements);
+        let off = blocks.iter().position(|block| block.starts_with("G40 ") && block.contains(" X40"));
+        let off = off.unwrap_or_else(|| panic!("{name}: {blocks:#?}"));
+        // Up first where the axes do not arrive together.
+        let up = at(&blocks, "Z30");
+        assert!(up == off || up + 1 == off && !blocks[up].contains('X'), "{name}: {blocks:#?}");
+        assert!(tape_of(name, statements).findings.is_empty(), "{name}");
+    }
+}

@@ -118,13 +118,28 @@ impl Engine<'_> {
             self.control.template(&machine.templates.first_z, &values);
         } else {
             self.work_offset_now();
-            if let Some(corner) = self.rapid_corner(position) {
-                self.control.motion(&[], &[&machine.codes.rapid], &Self::axis_words(corner));
+            for place in self.rapid_corner(position).into_iter().chain([position]) {
+                let off = self.compensation_off(place);
+                self.control.motion(&off, &[&machine.codes.rapid], &Self::axis_words(place));
             }
-            self.control.motion(&[], &[&machine.codes.rapid], &Self::axis_words(position));
         }
         self.skipped = false;
         self.position = Some(self.rounded(position));
+    }
+
+    /// The code of a compensation that waits to end, where a rapid moves in its plane. One that is to begin waits for the cut, which its approach is.
+    fn compensation_off(&mut self, place: Vec3) -> Vec<String> {
+        if self.compensated || !self.moves_in_plane(place) {
+            return Vec::new();
+        }
+        let Some(pending) = self.compensation.take() else { return Vec::new() };
+        self.level_plane();
+        pending.words
+    }
+
+    /// Whether a position is another one in the plane of holes and of cutter compensation.
+    fn moves_in_plane(&self, position: Vec3) -> bool {
+        self.control.changes(AXES[0], position.x) || self.control.changes(AXES[1], position.y)
     }
 
     /// Where a rapid turns, if one of its axes moves apart: that axis goes first when it goes up, and last when it goes
@@ -385,8 +400,11 @@ impl Engine<'_> {
         self.check_cutting();
         let length = self.position.map_or(0.0, |start| (position - start).norm());
         let (feed_code, feed) = self.feed_words(length);
-        let in_plane = self.control.changes(AXES[0], position.x) || self.control.changes(AXES[1], position.y);
-        let before = if in_plane { self.compensation.take().map(|pending| pending.words) } else { None };
+        let before = if self.moves_in_plane(position) {
+            self.compensation.take().map(|pending| pending.words)
+        } else {
+            None
+        };
         let machine = self.machine;
         if before.is_some() {
             self.level_plane();
