@@ -55,14 +55,12 @@ fn waves() -> Geometry {
         [[a, b, first, middle], [middle, last, d, e]]
     };
     let rows = NET.map(|row| split(row.map(Vec3::from)));
-    let mut patches = Vec::new();
-    for half in 0..2 {
+    let patches = [0, 1].into_iter().flat_map(|half| {
         let columns: [[[Vec3; 4]; 2]; 4] =
             std::array::from_fn(|k| split(std::array::from_fn(|row| rows[row][half][k])));
-        for other in 0..2 {
-            patches.push(Patch::from_points(&columns.map(|column| column[other])));
-        }
-    }
+        [0, 1].map(|other| Patch::from_points(&columns.map(|column| column[other])))
+    });
+    let patches = patches.collect();
     let surface = SculpturedSurface::assembled(patches, Some((2, 2)), Vec::new(), 1.0, Mesh::default());
     Geometry::Sculptured(Remembering::new(surface))
 }
