@@ -114,8 +114,8 @@ pub enum PostFindingKind {
     CompensationOnArc,
     #[error("cutter compensation is never used by a motion in its plane")]
     CompensationUnused,
-    #[error("the tool is changed while CUTCOM is on")]
-    CompensationLeftOn,
+    #[error("cutter compensation is still on at {word}")]
+    CompensationLeftOn { word: SmolStr },
     #[error("{word} without a clearance plane")]
     NoClearance { word: SmolStr },
     #[error("PLUNGE without a RETRCT before it")]
@@ -181,7 +181,7 @@ impl PostFindingKind {
             | Kind::ArgumentConflict { .. }
             | Kind::ToolOutsideMagazine { .. }
             | Kind::CycleLeftOn { .. }
-            | Kind::CompensationLeftOn
+            | Kind::CompensationLeftOn { .. }
             | Kind::NotSupported { .. }
             | Kind::ToolChangeWhile { .. }
             | Kind::TapFeed { .. }

@@ -154,7 +154,15 @@ fn arguments_are_checked_against_the_machine_in_use() {
             "CYCLE/DRILL,DEPTH,5,MMPM,50,CLEAR,2\nGOTO/1,0,0\nLOADTL/2\n",
             PostFindingKind::CycleLeftOn { cycle: "DRILL".into(), word: "LOADTL".into() },
         ),
-        ("CUTCOM/RIGHT,1\nGOTO/9,0,0\nLOADTL/2\n", PostFindingKind::CompensationLeftOn),
+        (
+            "CUTCOM/RIGHT,1\nGOTO/9,0,0\nLOADTL/2\n",
+            PostFindingKind::CompensationLeftOn { word: "LOADTL".into() },
+        ),
+        ("CUTCOM/RIGHT,1\nGOTO/9,0,0\n", PostFindingKind::CompensationLeftOn { word: "FINI".into() }),
+        (
+            "CUTCOM/LEFT,1\nGOTO/9,0,0\nCYCLE/DRILL,DEPTH,5,MMPM,50,CLEAR,2\nGOTO/1,0,0\nGOTO/2,0,0\nCYCLE/OFF\nCUTCOM/OFF\nGOTO/0,0,0\n",
+            PostFindingKind::CompensationLeftOn { word: "CYCLE".into() },
+        ),
         ("FROM/0,0,60\n", PostFindingKind::Repeated { word: "FROM".into() }),
         ("ROTABL/90\n", PostFindingKind::NoRotaryAxis { word: "ROTABL".into() }),
         ("ROTHED/ATANGL,90\n", PostFindingKind::NoRotaryAxis { word: "ROTHED".into() }),

@@ -472,6 +472,9 @@ impl Engine<'_> {
         if self.approach.is_some() {
             self.rapid_to(Vec3::new(top.x, top.y, plane));
         }
+        if self.compensating && cycle.holes == 1 {
+            self.find(PostFindingKind::CompensationLeftOn { word: "CYCLE".into() });
+        }
         if self.position.is_none() {
             self.find(PostFindingKind::CycleWithoutPosition);
             self.cycle = Some(cycle);

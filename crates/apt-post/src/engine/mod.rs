@@ -175,6 +175,8 @@ struct Engine<'a> {
     /// Circle of the motion record that comes next.
     next_circle: Option<usize>,
     compensation: Option<PendingCompensation>,
+    /// Whether the tape has switched compensation on: a motion has taken the code.
+    compensating: bool,
     /// Whether the last CUTCOM switched compensation on.
     compensated: bool,
     cycle: Option<hole::Cycle>,
@@ -242,6 +244,7 @@ impl<'a> Engine<'a> {
             circles: Pieces::default(),
             next_circle: None,
             compensation: None,
+            compensating: false,
             compensated: false,
             cycle: None,
             suspended_cycle: None,
@@ -309,6 +312,9 @@ impl<'a> Engine<'a> {
         }
         self.unused();
         self.left_on(&"FINI".into());
+        if self.compensating && self.compensated {
+            self.find(PostFindingKind::CompensationLeftOn { word: "FINI".into() });
+        }
         self.end_program();
         self.closed = true;
         let machine = self.machine;

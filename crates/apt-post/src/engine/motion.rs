@@ -133,6 +133,7 @@ impl Engine<'_> {
             return Vec::new();
         }
         let Some(pending) = self.compensation.take() else { return Vec::new() };
+        self.compensating = false;
         self.level_plane();
         pending.words
     }
@@ -407,6 +408,7 @@ impl Engine<'_> {
         };
         let machine = self.machine;
         if before.is_some() {
+            self.compensating = self.compensated;
             self.level_plane();
         }
         let mut words = Self::axis_words(position);

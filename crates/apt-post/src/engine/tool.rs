@@ -47,7 +47,9 @@ impl Engine<'_> {
         self.unused();
         self.check_magazine(number);
         if self.compensated {
-            self.find(PostFindingKind::CompensationLeftOn);
+            self.find(PostFindingKind::CompensationLeftOn { word: arguments.word.clone() });
+            // Told once.
+            self.compensating = false;
         }
         if self.tool == Some(number) {
             self.find(PostFindingKind::SameTool { number });

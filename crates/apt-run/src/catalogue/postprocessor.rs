@@ -119,7 +119,7 @@ fn code(kind: &Kind) -> &'static str {
         Kind::ArcNotInPlane => "APT0876",
         Kind::CompensationOnArc => "APT0877",
         Kind::CompensationUnused => "APT0878",
-        Kind::CompensationLeftOn => "APT0879",
+        Kind::CompensationLeftOn { .. } => "APT0879",
         Kind::NoClearance { .. } => "APT0880",
         Kind::NoRetract => "APT0881",
         Kind::ArgumentOutOfRange { .. } => "APT0882",
@@ -150,7 +150,7 @@ fn hint(kind: &Kind) -> Option<&'static str> {
             "check the number, or the magazine in the definition of the machine"
         }
         Kind::CycleLeftOn { .. } => "give CYCLE/OFF after the last hole",
-        Kind::CompensationLeftOn => "give CUTCOM/OFF before the tool leaves the contour",
+        Kind::CompensationLeftOn { .. } => "give CUTCOM/OFF before the tool leaves the contour",
         Kind::ToolAxis { .. } => "this machine has a fixed spindle; choose one with rotary axes",
         Kind::AxisLimit { .. } => "shift the part by ORIGIN or TRANS, or choose a larger machine",
         Kind::CycleWithoutPosition => "give a GOTO before CYCLE",
