@@ -138,8 +138,9 @@ impl RollingBall<'_> {
         let mut place = settled(surface, start);
         let mut distance = f64::INFINITY;
         let mut left_pole = false;
+        let mut known = None;
         for _ in 0..MOST_STEPS {
-            let here = self.offset(surface, &place).ok_or(NoContact { distance })?;
+            let here = known.take().or_else(|| self.offset(surface, &place)).ok_or(NoContact { distance })?;
             let f = residual(&here);
             distance = f[0].hypot(f[1]);
             let size = here.at.du.norm().max(here.at.dv.norm()) + self.radius;
@@ -162,22 +163,23 @@ impl RollingBall<'_> {
             let step = [(b * f[1] - d * f[0]) / determinant, (c * f[0] - a * f[1]) / determinant];
             let long = step[0].abs().max(step[1].abs());
             let mut share = if long > GREATEST_STEP { GREATEST_STEP / long } else { 1.0 };
-            let mut next = None;
             for _ in 0..MOST_HALVINGS {
                 let [u, v] = place.parameters;
                 let parameters = [u + share * step[0], v + share * step[1]];
                 let trial = settled(surface, Place { patch: place.patch, parameters });
-                let better = self.offset(surface, &trial).is_some_and(|offset| {
-                    let g = residual(&offset);
+                known = self.offset(surface, &trial).filter(|offset| {
+                    let g = residual(offset);
                     g[0].hypot(g[1]) < distance
                 });
-                if better {
-                    next = Some(trial);
+                if known.is_some() {
+                    place = trial;
                     break;
                 }
                 share *= 0.5;
             }
-            place = next.ok_or(NoContact { distance })?;
+            if known.is_none() {
+                return Err(NoContact { distance });
+            }
         }
         Err(NoContact { distance })
     }
