@@ -50,10 +50,12 @@ impl AlignedBox {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
+    #[inline]
     pub(crate) fn center(&self) -> Vec3 {
         (self.low + self.high) * 0.5
     }
 
+    #[inline]
     pub(crate) fn half(&self) -> Vec3 {
         (self.high - self.low) * 0.5
     }
@@ -106,6 +108,12 @@ impl PatchTree {
         self.nodes.len().checked_sub(1)
     }
 
+    /// The number of nodes.
+    pub(crate) fn count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    #[inline]
     pub(crate) fn node(&self, index: usize) -> Option<&Node> {
         self.nodes.get(index)
     }

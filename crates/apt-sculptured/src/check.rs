@@ -1,8 +1,11 @@
 //! Interference checking: the deepest point of surfaces in the tool, with proof (sculptured surfaces reference 5.4).
 
+mod memory;
 mod search;
 
 use apt_geometry::{Vec3, canonical::Remembering, parametric::SculpturedSurface, patience::Patience};
+
+pub use memory::Checker;
 
 use crate::{
     bounds::PatchTree,
@@ -90,5 +93,5 @@ pub struct Report {
 
 /// Checks a tool in a pose against obstacles.
 pub fn check(tool: &Tool, pose: &Pose, obstacles: &[Obstacle], question: &Question<'_>) -> Report {
-    search::deepest(tool, pose, obstacles, question)
+    search::deepest(tool, pose, obstacles, question, &mut memory::Memory::default())
 }

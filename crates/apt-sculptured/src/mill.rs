@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 pub use avoid::NotAvoided;
 
 use crate::{
-    check::{Cost, Hit, Obstacle, Question},
+    check::{Checker, Cost, Hit, Obstacle, Question},
     error::MillingError,
     guide::GuideElement,
     tool::{Pose, Tool},
@@ -219,14 +219,16 @@ impl<'a> Job<'a> {
 /// Collects the output and checks every location on its way.
 pub(crate) struct Sink<'a> {
     milled: &'a mut Milled,
+    checker: Checker<'a>,
     locations: usize,
     length: f64,
     last: Option<way::Stand>,
 }
 
 impl<'a> Sink<'a> {
-    fn new(milled: &'a mut Milled) -> Self {
-        Self { milled, locations: 0, length: 0.0, last: None }
+    fn new(milled: &'a mut Milled, job: &'a Job<'_>) -> Self {
+        let checker = Checker::new(job.tool.with_stock(job.thickness()), &job.checked);
+        Self { milled, checker, locations: 0, length: 0.0, last: None }
     }
 
     /// A feed rate; zero writes none.

@@ -29,6 +29,35 @@ pub struct Depth {
     pub ascent: Vec3,
 }
 
+/// The arc of the corner beside a point, in the plane through the tool axis and the point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Round {
+    /// Depth of the point.
+    pub(crate) depth: f64,
+    /// Distance of the point from the centre of the arc.
+    pub(crate) distance: f64,
+    /// Unit vector from that centre to the point.
+    pub(crate) normal: Vec3,
+    /// Unit vector across that in the plane, outward where the normal points down the axis.
+    pub(crate) across: Vec3,
+    /// Unit vector out of the plane.
+    pub(crate) out: Vec3,
+    /// Sine and cosine of the angle of the normal from straight down.
+    pub(crate) polar: [f64; 2],
+    /// Distance of the centre from the axis.
+    pub(crate) ring: f64,
+    /// Sine and cosine of those angles of the arc's first and last normal.
+    pub(crate) fan: [[f64; 2]; 2],
+}
+
+impl Round {
+    /// Whether the centre of the arc is on the axis: the corner is part of a ball.
+    #[inline]
+    pub(crate) fn is_sphere(&self) -> bool {
+        self.ring == 0.0
+    }
+}
+
 /// A contact that no place of the tool can make.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("the normal leans {polar} rad from the tool axis, the tool touches up to {greatest} rad")]
@@ -44,6 +73,8 @@ pub struct NoPlaceOnTool {
 pub struct Tool {
     profile: Profile,
     faces: [Face; 3],
+    /// Sine and cosine of the polar angles of the arc's first and last normal.
+    fan: [[f64; 2]; 2],
     /// Half angle between axis and upper line, radians.
     upper_lean: f64,
     /// Stock added all around, negative to bite.
@@ -71,7 +102,8 @@ impl Tool {
         };
         let tip = ProfilePoint { radius: 0.0, height: 0.0 };
         let faces = [face(sa, -ca, tip), face(cb, -sb, profile.upper), face(0.0, 1.0, profile.top)];
-        Self { profile, faces, upper_lean: cutter.beta, stock }
+        let fan = profile.fan.map(|angle| <[f64; 2]>::from(angle.sin_cos()));
+        Self { profile, faces, fan, upper_lean: cutter.beta, stock }
     }
 
     /// The same tool with other stock.
@@ -107,6 +139,7 @@ impl Tool {
     }
 
     /// The depth of a point (sculptured surfaces reference 3.A). Concave in the point, with slope at most 1.
+    #[inline]
     pub fn depth(&self, pose: &Pose, point: &Vec3) -> Depth {
         let from_end = point - pose.end;
         let height = from_end.dot(&pose.axis);
@@ -131,7 +164,38 @@ impl Tool {
         })
     }
 
+    /// The arc of the corner, where a point is beside it.
+    #[inline]
+    pub(crate) fn round(&self, pose: &Pose, point: &Vec3) -> Option<Round> {
+        let Profile { center, arc, .. } = self.profile;
+        if arc <= 0.0 {
+            return None;
+        }
+        let from_end = point - pose.end;
+        let height = from_end.dot(&pose.axis);
+        let across = from_end - pose.axis * height;
+        let radius = across.norm();
+        let outward = if radius > 0.0 { across / radius } else { perpendicular(&pose.axis) };
+        let (x, z) = (radius - center.radius, height - center.height);
+        let distance = (x * x + z * z).sqrt();
+        if distance <= 0.0 {
+            return None;
+        }
+        let (sine, cosine) = (x / distance, -z / distance);
+        Some(Round {
+            depth: self.stock + arc - distance,
+            distance,
+            normal: outward * sine - pose.axis * cosine,
+            across: outward * cosine + pose.axis * sine,
+            out: outward.cross(&pose.axis),
+            polar: [sine, cosine],
+            ring: center.radius,
+            fan: self.fan,
+        })
+    }
+
     /// Signed distance from the profile, positive outside, with its gradient.
+    #[inline]
     fn signed_distance(&self, radius: f64, height: f64) -> (f64, f64, f64) {
         let mut inside = (f64::NEG_INFINITY, 0.0, 1.0);
         for face in &self.faces {
@@ -140,9 +204,14 @@ impl Tool {
                 inside = (value, face.radial, face.axial);
             }
         }
-        let arc = self.arc_distance(radius, height);
-        if let Some(arc) = arc.filter(|arc| arc.0 > inside.0) {
-            inside = arc;
+        if let Some(arc) = self.arc_distance(radius, height) {
+            // Beside the arc nothing of the outline is as near to what is outside.
+            if arc.0 > 0.0 {
+                return arc;
+            }
+            if arc.0 > inside.0 {
+                inside = arc;
+            }
         }
         if inside.0 <= 0.0 {
             return inside;
@@ -150,14 +219,14 @@ impl Tool {
         let Profile { lower, upper, top, .. } = self.profile;
         let tip = ProfilePoint { radius: 0.0, height: 0.0 };
         let axis_top = ProfilePoint { radius: 0.0, height: top.height };
-        let mut best = arc.filter(|arc| arc.0 > 0.0).unwrap_or((f64::INFINITY, inside.1, inside.2));
+        let mut best = (f64::INFINITY, inside.1, inside.2);
         for (a, b) in [(tip, lower), (upper, top), (top, axis_top)] {
             let (dx, dz) = (b.radius - a.radius, b.height - a.height);
             let square = dx * dx + dz * dz;
             let along = (radius - a.radius) * dx + (height - a.height) * dz;
             let t = if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 };
             let (x, z) = (radius - a.radius - t * dx, height - a.height - t * dz);
-            let distance = x.hypot(z);
+            let distance = (x * x + z * z).sqrt();
             if distance < best.0 {
                 // On the profile itself the face says the direction.
                 best = if distance > f64::MIN_POSITIVE {
@@ -171,13 +240,20 @@ impl Tool {
     }
 
     /// Signed distance from the corner arc for a point within its fan of normals.
+    #[inline]
     fn arc_distance(&self, radius: f64, height: f64) -> Option<(f64, f64, f64)> {
-        let Profile { center, arc, fan, .. } = self.profile;
+        let Profile { center, arc, .. } = self.profile;
+        if arc <= 0.0 {
+            return None;
+        }
         let (x, z) = (radius - center.radius, height - center.height);
-        let distance = x.hypot(z);
-        let polar = x.atan2(-z);
-        (arc > 0.0 && distance > 0.0 && polar >= fan[0] && polar <= fan[1])
-            .then(|| (distance - arc, x / distance, z / distance))
+        // The fan is less than half a turn wide.
+        let [[first_sine, first_cosine], [last_sine, last_cosine]] = self.fan;
+        if x * first_cosine + z * first_sine < 0.0 || x * last_cosine + z * last_sine > 0.0 {
+            return None;
+        }
+        let distance = (x * x + z * z).sqrt();
+        (distance > 0.0).then(|| (distance - arc, x / distance, z / distance))
     }
 
     /// The tool end when the tool touches the point `contact`, of a surface whose unit normal towards the tool is

@@ -15,6 +15,7 @@ pub(super) struct Weights {
 }
 
 impl Weights {
+    #[inline]
     pub(super) fn at(t: f64) -> Self {
         let s = 1.0 - t;
         Self {
@@ -59,6 +60,7 @@ pub(super) fn cubic(control: &[Homogeneous; 4], t: f64) -> [Homogeneous; 3] {
 }
 
 /// Both parts of a cubic cut at `t` (de Casteljau).
+#[inline]
 pub(super) fn cut(control: &[Homogeneous; 4], t: f64) -> [[Homogeneous; 4]; 2] {
     let between = |a: &Homogeneous, b: &Homogeneous| a + (b - a) * t;
     let [a, b, c, d] = control;
@@ -105,6 +107,7 @@ pub(super) fn direction(vector: &Vec3) -> Homogeneous {
 }
 
 /// The quotient `A/w` of a homogeneous value.
+#[inline]
 pub(super) fn project(value: &Homogeneous) -> Vec3 {
     value.xyz() / value.w
 }

@@ -202,16 +202,19 @@ impl Patch {
     }
 
     /// The halves below and above u = ½.
+    #[inline]
     pub fn halved_u(&self) -> [Patch; 2] {
         self.cut_u(0.5)
     }
 
     /// The halves below and above v = ½.
+    #[inline]
     pub fn halved_v(&self) -> [Patch; 2] {
         self.cut_v(0.5)
     }
 
     /// The parts below and above a value of u.
+    #[inline]
     pub fn cut_u(&self, u: f64) -> [Patch; 2] {
         let mut parts = [*self; 2];
         let [first, second] = &mut parts;
@@ -225,6 +228,7 @@ impl Patch {
     }
 
     /// The parts below and above a value of v.
+    #[inline]
     pub fn cut_v(&self, v: f64) -> [Patch; 2] {
         let mut parts = [*self; 2];
         let [first, second] = &mut parts;
@@ -246,6 +250,7 @@ impl Patch {
     }
 
     /// The control points as places.
+    #[inline]
     pub fn points(&self) -> [[Vec3; 4]; 4] {
         let mut points = [[Vec3::zeros(); 4]; 4];
         for (row, control) in points.iter_mut().zip(&self.control) {

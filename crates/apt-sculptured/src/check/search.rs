@@ -1,12 +1,16 @@
 //! Best first: the box or cell with the greatest bound is divided next.
 
+mod bend;
 mod ridge;
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 use apt_geometry::{Vec3, parametric::Patch};
 
-use super::{Cost, Hit, Obstacle, Question, Report};
+use super::{
+    Cost, Hit, Obstacle, Question, Report,
+    memory::{Memory, Outlook},
+};
 use crate::{
     bounds::Content,
     tool::{Pose, Tool},
@@ -39,6 +43,8 @@ struct Cell {
     low: [f64; 2],
     size: [f64; 2],
     control: Patch,
+    /// Whether the patch is a polynomial, all of whose weights are the same.
+    polynomial: bool,
     /// Whether halving u narrows the bound more than halving v.
     along_u: bool,
 }
@@ -68,19 +74,30 @@ struct Search<'a> {
     pose: &'a Pose,
     obstacles: &'a [Obstacle],
     question: &'a Question<'a>,
+    memory: &'a mut Memory,
     open: BinaryHeap<Open>,
+    /// How many pieces have arrived.
+    arrived: u64,
     best: Option<Hit>,
     cost: Cost,
 }
 
 /// The deepest point of the obstacles in the tool.
-pub(super) fn deepest(tool: &Tool, pose: &Pose, obstacles: &[Obstacle], question: &Question<'_>) -> Report {
+pub(super) fn deepest(
+    tool: &Tool,
+    pose: &Pose,
+    obstacles: &[Obstacle],
+    question: &Question<'_>,
+    memory: &mut Memory,
+) -> Report {
     let mut search = Search {
         tool,
         pose,
         obstacles,
         question,
+        memory,
         open: BinaryHeap::new(),
+        arrived: 0,
         best: None,
         cost: Cost::default(),
     };
@@ -113,6 +130,7 @@ impl Search<'_> {
     }
 
     /// Pieces with a bound up to this need no work.
+    #[inline]
     fn limit(&self) -> f64 {
         let threshold = self.question.threshold;
         match &self.best {
@@ -126,14 +144,21 @@ impl Search<'_> {
         Report { worst, bound, proved, cost: self.cost }
     }
 
+    #[inline]
     fn push(&mut self, bound: f64, piece: Piece) {
         if bound > self.limit() {
-            let number = self.cost.boxes + self.cost.cells;
+            self.arrived += 1;
+            let number = self.arrived;
             self.open.push(Open { bound, number, piece });
         }
     }
 
     fn add_node(&mut self, obstacle: usize, node: usize) {
+        match self.memory.outlook(obstacle, node, self.limit()) {
+            Outlook::Clear => return,
+            Outlook::Divide(bound) => return self.push(bound, Piece::Node { obstacle, node }),
+            Outlook::Unknown => {}
+        }
         let Some(bounds) =
             self.obstacles.get(obstacle).and_then(|one| one.tree().node(node)).map(|node| node.bounds)
         else {
@@ -142,6 +167,7 @@ impl Search<'_> {
         self.cost.boxes += 1;
         let depth = self.tool.depth(self.pose, &bounds.center());
         let bound = depth.value + depth.ascent.abs().dot(&bounds.half());
+        self.memory.keep(obstacle, node, bound);
         self.push(bound, Piece::Node { obstacle, node });
     }
 
@@ -154,17 +180,20 @@ impl Search<'_> {
             }
             Some(Content::Patch(patch)) => {
                 if let Some(&control) = one.surface().patches.get(patch) {
-                    let whole =
-                        Cell { obstacle, patch, low: [0.0; 2], size: [1.0; 2], control, along_u: true };
-                    self.add_cell(whole);
+                    let polynomial = bend::is_polynomial(&control);
+                    let (low, size) = ([0.0; 2], [1.0; 2]);
+                    let whole = Cell { obstacle, patch, low, size, control, polynomial, along_u: true };
+                    let bound = self.add_cell(whole);
+                    self.memory.lower(obstacle, node, bound);
                 }
             }
             None => {}
         }
     }
 
-    /// Bounds a cell by the supergradient at its middle, which is a point of the surface and may be the deepest yet.
-    fn add_cell(&mut self, mut cell: Cell) {
+    /// Bounds a cell by the supergradient at its middle, which is a point of the surface and may be the deepest yet, and where
+    /// that does not settle it by how the corner bends away or by what other faces leave. The bound.
+    fn add_cell(&mut self, mut cell: Cell) -> f64 {
         self.cost.cells += 1;
         let points = cell.control.points();
         let middle = middle(&cell.control);
@@ -182,6 +211,12 @@ impl Search<'_> {
         let steps = rises(&points, &middle, &depth.ascent, 0.0);
         cell.along_u = varies_along_u(&steps);
         let mut bound = depth.value + greatest(&steps);
+        if bound > self.limit() && cell.polynomial {
+            let (round, limit) = (self.tool.round(self.pose, &middle), self.limit());
+            if let Some(beside) = round.and_then(|round| bend::greatest(&round, &points, &middle, limit)) {
+                bound = bound.min(beside);
+            }
+        }
         if bound > self.limit() {
             for face in self.tool.depths_behind_faces(self.pose, &middle) {
                 let beyond = rises(&points, &middle, &face.ascent, face.value - depth.value);
@@ -189,6 +224,7 @@ impl Search<'_> {
             }
         }
         self.push(bound, Piece::Cell(Box::new(cell)));
+        bound
     }
 
     fn divide_cell(&mut self, cell: &Cell) {
@@ -205,6 +241,7 @@ impl Search<'_> {
 }
 
 /// How much a linear function with a slope rises from the middle to each control point, from `base` on.
+#[inline]
 fn rises(points: &[[Vec3; 4]; 4], middle: &Vec3, slope: &Vec3, base: f64) -> [[f64; 4]; 4] {
     let mut found = [[0.0; 4]; 4];
     for (row, points) in found.iter_mut().zip(points) {
@@ -215,11 +252,13 @@ fn rises(points: &[[Vec3; 4]; 4], middle: &Vec3, slope: &Vec3, base: f64) -> [[f
     found
 }
 
+#[inline]
 fn greatest(steps: &[[f64; 4]; 4]) -> f64 {
     steps.iter().flatten().fold(0.0, |most: f64, &step| most.max(step))
 }
 
 /// Whether the steps of the control points differ more along u than along v: that direction makes the bound wide.
+#[inline]
 fn varies_along_u(steps: &[[f64; 4]; 4]) -> bool {
     let spread = |values: [f64; 4]| {
         let high = values.iter().fold(f64::NEG_INFINITY, |most, &value| most.max(value));
@@ -233,6 +272,7 @@ fn varies_along_u(steps: &[[f64; 4]; 4]) -> bool {
 }
 
 /// The point of a patch at u = v = ½.
+#[inline]
 fn middle(patch: &Patch) -> Vec3 {
     const WEIGHTS: [f64; 4] = [0.125, 0.375, 0.375, 0.125];
     let mut sum = nalgebra::Vector4::zeros();

@@ -84,7 +84,7 @@ impl Job<'_> {
     /// Where a station is put out, avoided if it has to be.
     pub(super) fn freed(&self, station: &Station, course: &Course, sink: &mut Sink<'_>) -> Freed {
         let tool = self.tool.with_stock(self.thickness());
-        let Some(hit) = self.worst(&tool, &station.pose, sink) else {
+        let Some(hit) = self.worst(&station.pose, sink) else {
             return Freed { stand: Stand { pose: station.pose, clear: true }, encounter: None };
         };
         let remedy = self.remedy(&tool, station, course, &hit, sink);
@@ -116,8 +116,7 @@ impl Job<'_> {
     /// Checks a location away from the part and puts it out as it is.
     pub(super) fn put_free(&self, pose: Pose, sink: &mut Sink<'_>) -> Result<(), MillingError> {
         self.cancelled()?;
-        let tool = self.tool.with_stock(self.thickness());
-        let hit = self.worst(&tool, &pose, sink);
+        let hit = self.worst(&pose, sink);
         let stand = Stand { pose, clear: hit.is_none() };
         let way = self.on_the_way(&stand, sink);
         self.was_cancelled()?;
@@ -135,8 +134,8 @@ impl Job<'_> {
         sink.milled.encounters.push(Encounter { pose: *pose, hit, surface, remedy });
     }
 
-    fn worst(&self, tool: &Tool, pose: &Pose, sink: &mut Sink<'_>) -> Option<Hit> {
-        self.deepest(tool, pose, &self.question(), sink)
+    fn worst(&self, pose: &Pose, sink: &mut Sink<'_>) -> Option<Hit> {
+        self.deepest(pose, &self.question(), sink)
     }
 
     fn remedy(
@@ -196,12 +195,12 @@ impl Job<'_> {
             if way > limit {
                 return Err(NotAvoided::Limit { limit, needed: way });
             }
-            match self.worst(tool, &lifted(way), sink) {
+            match self.worst(&lifted(way), sink) {
                 None => return Ok((way, lifted(way))),
                 Some(next) => point = next.point,
             }
         }
-        let depth = self.worst(tool, &lifted(way), sink).map_or(0.0, |hit| hit.depth);
+        let depth = self.worst(&lifted(way), sink).map_or(0.0, |hit| hit.depth);
         Err(NotAvoided::StillInside { depth })
     }
 
@@ -258,7 +257,7 @@ impl Job<'_> {
             let mut attempt = |angle: f64| -> Option<Tilted> {
                 let leaning = axis * angle.cos() + lean * (sense * angle.sin());
                 let pose = self.seated(station, &leaning)?;
-                let hit = self.worst(tool, &pose, sink);
+                let hit = self.worst(&pose, sink);
                 Some(Tilted { angle: sense * angle, pitch, pose, hit })
             };
             if let Some(tilted) = least_tilt(start, least, greatest, range.constant, &mut attempt) {

@@ -19,7 +19,7 @@ const ALONG_PLANE: f64 = 1e-9;
 
 /// Carries out the command.
 pub(super) fn run(job: &Job<'_>, milled: &mut Milled) -> Result<(), MillingError> {
-    let mut sink = Sink::new(milled);
+    let mut sink = Sink::new(milled, job);
     match &job.command.command {
         RegionalCommand::Position { start, retract } => job.position(*start, retract, &mut sink),
         RegionalCommand::Path(pass) => {

@@ -5,8 +5,8 @@ use apt_geometry::Vec3;
 
 use super::{Job, Sink};
 use crate::{
-    check::{Hit, Question, check},
-    tool::{Pose, Tool},
+    check::{Hit, Question},
+    tool::Pose,
 };
 
 /// Most poses that are checked on one way.
@@ -46,7 +46,6 @@ impl Job<'_> {
             return None;
         }
         let pieces = (length / apart).ceil().min(MOST_POSES + 1.0);
-        let tool = self.tool.with_stock(self.thickness());
         let mut question = self.question();
         question.threshold += band;
         let mut worst: Option<OnTheWay> = None;
@@ -55,7 +54,7 @@ impl Job<'_> {
             let axis = from.axis * (1.0 - share) + to.pose.axis * share;
             let pose =
                 Pose { end: from.end + chord * share, axis: axis.try_normalize(0.0).unwrap_or(from.axis) };
-            let deepest = self.deepest(&tool, &pose, &question, sink);
+            let deepest = self.deepest(&pose, &question, sink);
             if let Some(hit) = deepest
                 && worst.is_none_or(|worst| hit.depth > worst.hit.depth)
             {
@@ -66,20 +65,13 @@ impl Job<'_> {
     }
 
     /// The deepest point of a pose, counted among the checks.
-    pub(super) fn deepest(
-        &self,
-        tool: &Tool,
-        pose: &Pose,
-        question: &Question<'_>,
-        sink: &mut Sink<'_>,
-    ) -> Option<Hit> {
-        if self.checked.is_empty() {
+    pub(super) fn deepest(&self, pose: &Pose, question: &Question<'_>, sink: &mut Sink<'_>) -> Option<Hit> {
+        if sink.checker.is_idle() {
             return None;
         }
-        let report = check(tool, pose, &self.checked, question);
+        let report = sink.checker.check(pose, question);
         sink.milled.unproved += u32::from(!report.proved);
-        sink.milled.cost.boxes += report.cost.boxes;
-        sink.milled.cost.cells += report.cost.cells;
+        sink.milled.cost = sink.checker.cost();
         report.worst
     }
 }

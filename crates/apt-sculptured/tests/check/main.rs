@@ -2,6 +2,7 @@
 
 mod brute;
 mod surfaces;
+mod zigzag;
 
 use std::cell::Cell;
 
@@ -11,7 +12,7 @@ use apt_geometry::{
     patience::{Patience, Waiting},
 };
 use apt_sculptured::{
-    check::{Obstacle, Question, Report, check},
+    check::{Checker, Obstacle, Question, Report, check},
     tool::{Pose, Tool},
 };
 use brute::{Mill, deepest};
@@ -263,6 +264,32 @@ proptest! {
                 prop_assert!(worst.depth >= dense - 2.0 * GAP, "{worst:?} against {dense}");
             }
             None => prop_assert!(dense <= 0.01 + 1e-9, "missed {dense}"),
+        }
+    }
+
+    /// What a checker has kept from other poses changes no answer.
+    #[test]
+    fn what_is_kept_from_pose_to_pose_changes_no_answer(
+        start in prop::array::uniform2(4.0..26.0f64), moves in prop::collection::vec((prop::array::uniform3(-1.0..1.0f64), 0.0..1.0f64), 12),
+        corner in prop::sample::select(vec![0.0, 0.5, 2.0]), lean in prop::array::uniform2(-0.3..0.3f64),
+    ) {
+        let surface = t15();
+        let obstacles = [Obstacle::new(surface.patches.clone())];
+        let numbers = [4.0, corner, 2.0 - corner, corner, 0.0, 0.0, 10.0];
+        let tool = Tool::new(&Cutter::from_numbers(&numbers, 1.0).expect("a cutter"), 0.0);
+        let mut checker = Checker::new(tool, &obstacles);
+        let mut end = surface.patches.evaluate_global(start[0], start[1]).expect("inside").position;
+        let mut axis = Vec3::z();
+        for (way, far) in moves {
+            // Some moves are small, some lead away.
+            end += Vec3::from(way) * far.powi(4) * 4.0;
+            axis = (axis + Vec3::new(lean[0], lean[1], 0.0) * far.powi(4)).normalize();
+            let pose = Pose { end, axis };
+            let question = Question { threshold: 0.01, gap: GAP, patience: Patience::default() };
+            let (again, anew) = (checker.check(&pose, &question), check(&tool, &pose, &obstacles, &question));
+            prop_assert!(again.proved && anew.proved);
+            let depth = |report: &Report| report.worst.map_or(0.0, |worst| worst.depth);
+            prop_assert!((depth(&again) - depth(&anew)).abs() <= 2.0 * GAP, "{again:?} against {anew:?}");
         }
     }
 
