@@ -13,7 +13,7 @@ use apt_geometry::{
     surface::Bend,
 };
 
-use self::watch::{Status, Watch, transition};
+use self::watch::{Before, Status, Watch, transition};
 use super::{Prepared, is_tangent, proof::lowest};
 use crate::{
     attitude::Sweep,
@@ -213,9 +213,9 @@ impl<'a> Watcher<'a> {
             _ => watch.status == Status::Clear,
         };
         let depth = watch.depth(self.working(index), (relation, watch.clear_on));
-        let comes_out = watch.status == Status::Inside;
+        let (place, comes_out) = (watch.farthest_at, watch.status == Status::Inside);
         is_waiting
-            && depth.is_none_or(|depth| !self.is_touch(index, (depth, watch.farthest_at, comes_out)))
+            && depth.is_none_or(|depth| !self.is_touch(index, &Before { depth, place, comes_out }))
             && watch.count + 1 == self.checks[index].occurrence.max(1)
     }
 
@@ -293,8 +293,8 @@ impl<'a> Watcher<'a> {
             let depth = label.and_then(|label| watch.depth(working, (label, clear_on)));
             let was_at = watch.farthest_at;
             watch.go_on(label.is_some(), (next, clear_on), &tip);
-            let depth = depth.map(|depth| (depth, was_at, next > 0.0));
-            let event = crossing.and_then(|found| self.count(index, &mut watch, sweep, (found, depth)));
+            let before = depth.map(|depth| Before { depth, place: was_at, comes_out: next > 0.0 });
+            let event = crossing.and_then(|found| self.count(index, &mut watch, sweep, (found, before)));
             if event.is_some() {
                 return (event, watch);
             }
@@ -327,7 +327,7 @@ impl<'a> Watcher<'a> {
 
     /// Whether a tool that was so far in the check surface, or out of it, at a place, and comes out of it or into it, has only touched it: it is not past
     /// it then, or has not come to it anew. Nor is it where the vectors alone go to and fro in its band, elsewhere in theirs than the path at rest.
-    fn is_touch(&self, index: usize, (depth, place, comes_out): (f64, Vec3, bool)) -> bool {
+    fn is_touch(&self, index: usize, &Before { depth, place, comes_out }: &Before) -> bool {
         let working = self.working(index);
         let is_other = || self.at_rest(index, &place).is_some_and(|value| (value > 0.0) == comes_out);
         depth <= working.touch_limit() || depth <= working.inside.max(working.outside) && is_other()
@@ -340,12 +340,12 @@ impl<'a> Watcher<'a> {
         index: usize,
         watch: &mut Watch,
         sweep: &Sweep<'_>,
-        ((x, side), before): ((f64, f64), Option<(f64, Vec3, bool)>),
+        ((x, side), before): ((f64, f64), Option<Before>),
     ) -> Option<Event> {
         let tip = sweep.at(x).0;
-        if let Some(before) = before.filter(|before| before.0 <= self.near(index)) {
-            if self.is_touch(index, before) {
-                self.touched = Some((before.0, tip, index));
+        if let Some(before) = before.filter(|before| before.depth <= self.near(index)) {
+            if self.is_touch(index, &before) {
+                self.touched = Some((before.depth, tip, index));
                 return None;
             }
             watch.is_shallow = true;

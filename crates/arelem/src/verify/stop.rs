@@ -178,7 +178,7 @@ fn walk(
                 Some(next) if leaps => (state, brushed, since) = (next, false, none),
                 // What comes near again is counted when it has gone away.
                 Some(next) if next == state && value.abs() <= near => {
-                    (brushed, since) = (brushed || away, none)
+                    (brushed, since) = (brushed || away, none);
                 }
                 Some(next) => {
                     record(&mut count, relation, state, next, brushed);

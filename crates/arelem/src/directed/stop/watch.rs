@@ -32,6 +32,17 @@ pub(super) struct Watch {
     pub(super) falling: bool,
 }
 
+/// What was before the function changes its sign.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Before {
+    /// How far the tool was in the check surface, or out of it.
+    pub(super) depth: f64,
+    /// Where that was.
+    pub(super) place: Vec3,
+    /// Whether it comes out of the surface now.
+    pub(super) comes_out: bool,
+}
+
 impl Watch {
     /// How far the tool was in the check surface, or out of it, both from where motions end and from where the tool just touches, if what changes its sign
     /// does so back again on the side from which it came; for ON how far the tool end was beyond it.
