@@ -38,6 +38,8 @@ const NEAR: f64 = 2.0;
 const BISECTIONS: u32 = 60;
 /// Places, each half way from the one before to the end of a vector, at which it is looked from where the tool comes to that.
 const LOOKS_BEFORE_END: i32 = 6;
+/// Places, as shares of a longer step, at which the tool is at least four fifths as far from the check surface as anywhere on it, if it bends one way.
+const LOOKS_BETWEEN: [f64; 3] = [0.25, 0.5, 0.75];
 /// Distance, relative to the size of the coordinates, at which tool and check surface touch but for rounding.
 const SAME_PLACE: f64 = 1e-9;
 
@@ -280,6 +282,9 @@ impl<'a> Watcher<'a> {
             let plain = (x + self.way_to_change(index, sweep, (x, value)).max(floor) / stretch).min(length);
             let leap = if step < PLAIN_STEPS { None } else { self.leap(index, sweep, &trail, plain) };
             let next_x = leap.unwrap_or(plain);
+            if leap.is_some() && watch.farthest <= self.near(index) {
+                self.look_between(index, &mut watch, sweep, [x, next_x]);
+            }
             let (tip, tool) = sweep.at(next_x);
             let (next, side) = self.value_far(index, &tool, &tip);
             self.note(index, next, &tip);
@@ -333,6 +338,14 @@ impl<'a> Watcher<'a> {
         depth <= working.touch_limit() || depth <= working.inside.max(working.outside) && is_other()
     }
 
+    /// Notes how far the tool is from a check surface between the ends of a longer step: these are not where it is the farthest.
+    fn look_between(&self, index: usize, watch: &mut Watch, sweep: &Sweep<'_>, [low, high]: [f64; 2]) {
+        for share in LOOKS_BETWEEN {
+            let (tip, tool) = sweep.at(low + share * (high - low));
+            watch.go_on(false, self.value_far(index, &tool, &tip), &tip);
+        }
+    }
+
     /// Counts a position at a distance along a vector; the stop if it is the last one. Before it the tool was so far in the check surface, or out of it, at a
     /// place, and comes out of it or into it.
     fn count(
@@ -344,11 +357,11 @@ impl<'a> Watcher<'a> {
     ) -> Option<Event> {
         let tip = sweep.at(x).0;
         if let Some(before) = before.filter(|before| before.depth <= self.near(index)) {
+            watch.is_shallow = true;
             if self.is_touch(index, &before) {
                 self.touched = Some((before.depth, tip, index));
                 return None;
             }
-            watch.is_shallow = true;
         }
         watch.count += 1;
         let is_shallow = watch.is_shallow;

@@ -206,6 +206,8 @@ fn record(count: &mut Count, relation: Relation, from: State, to: State, brushed
         Relation::On if changes => count.certain += 1,
         Relation::To if changes && to == State::Violating => count.certain += 1,
         Relation::Past if changes && to == State::Clear => count.certain += 1,
+        // The tool end may have gone through and come back.
+        Relation::On if brushed && from == to => count.doubtful += 2,
         _ if brushed && (from == to || starts) => count.doubtful += 1,
         _ => {}
     }

@@ -264,3 +264,24 @@ fn a_ball_that_touches_a_branch_of_a_hyperbola_is_not_past_it() {
     let refused = p.attempt(&motion(Turn::Forward, &drive, &[(Relation::Past, 1, &hyperbola)]));
     let Err(MotionFailure::NeverMet { .. }) = refused else { panic!("{refused:?}") };
 }
+
+/// A cylinder that the path does not go through, but its vectors do a little: a turn later these are to be the same, that the path is not made simpler to
+/// come through it beyond doubt.
+#[test]
+fn what_is_taken_for_a_touch_stays_one() {
+    let (drive, part) =
+        (sphere(0.0, 0.0, -0.098, 7.815), cylinder(v(0.0, 0.0, -30.0), v(1.0, 0.0, 0.0), 30.0));
+    for k in -4..12 {
+        let reach = 8.010_882_192_050_643 + 0.0005 * f64::from(k);
+        let check = cylinder(v(reach + 5.0, 0.0, 0.0), v(0.0, 0.3, 1.0).normalize(), 5.0);
+        for occurrence in [2, 3] {
+            let mut p = Program::new();
+            p.tolerance(0.0005, 0.002).cutter(&[0.4]).from(0.0, -40.0, 0.0).indirv(0.0, 1.0, 0.0);
+            p.go(&[(Relation::To, &drive), (Relation::To, &part)]);
+            p.side(DriveSide::Right).indirv(1.0, 0.0, 0.0);
+            p.run(&motion(Turn::Forward, &drive, &[(Relation::On, occurrence, &check)]));
+            let evidence = verify(p.last(), &|| false).expect("evidence");
+            assert!(evidence.verified, "{reach} {occurrence}: {evidence:?}");
+        }
+    }
+}

@@ -24,7 +24,8 @@ pub(super) struct Watch {
     pub(super) farthest_at: Vec3,
     pub(super) clear_on: f64,
     pub(super) count: u32,
-    /// A position was counted before and after which the tool is no farther in the check surface, or out of it, than vectors may be elsewhere in their bands.
+    /// It was asked of a place whether it is a position before which the tool is no farther in the check surface, or out of it, than vectors may be elsewhere
+    /// in their bands.
     pub(super) is_shallow: bool,
     /// A position and the radius around it in which nothing happens.
     pub(super) quiet: (Vec3, f64),
