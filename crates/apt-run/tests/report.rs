@@ -324,6 +324,12 @@ fn words_of_a_finding_say_what_the_geometry_is() {
              INDIRV/1,0,0\nTLLFT,TLONPS,GOFWD/L1,ON,C1\n",
             ["APT0665", "deep into the part surface", "is ON the surface", "TLOFPS keeps all of it out"],
         ),
+        // Vectors are in it by less than they may be elsewhere.
+        (
+            "CUTTER/2\nINTOL/.02\nOUTTOL/.01\nS=SPHERE/0,0,0,10\nFROM/0,-15,0\nINDIRV/0,1,0\nGO/TO,S,TO,(PLANE/0,0,1,0)\n\
+             INDIRV/1,0,0\nTLRGT,GOFWD/S,PAST,(CIRCLE/16.99,0,5)\n",
+            ["APT0641", "never met PAST: up to (10.99", "the tool only touches it", "TO here ends at"],
+        ),
         // Ten across in a neck of nine.
         (
             "PL=PLANE/0,0,1,0\nH=HYPERB/CENTER,(POINT/0,0),4.5,9,0\nFROM/0,-20,0\nINDIRV/-1,0,0\n\

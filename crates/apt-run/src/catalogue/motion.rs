@@ -310,17 +310,22 @@ fn start(failure: &Failure) -> Option<Text> {
     })
 }
 
-/// A check surface that the tool is in, or out of again, by too little to be told from a touch.
+/// A check surface that the tool, or some vectors alone, are in or out of again by too little to be told from a touch.
 fn only_touched(wanted: Relation, at: &Vec3, depth: f64) -> Text {
-    let by = if wanted == Relation::Past { "in it" } else { "out of it again" };
+    let side = match wanted {
+        Relation::Past => "in it",
+        Relation::On => "beyond it",
+        _ => "out of it again",
+    };
+    let how_far =
+        if depth > 0.0 { format!(", {side} by no more than {}", number(depth)) } else { String::new() };
     let words = format!(
-        "the surface to stop at is never met {}: up to {} it is only touched, as the tool is {by} by no more than {}",
+        "the surface to stop at is never met {}: up to {} the tool only touches it{how_far}",
         relation(wanted),
-        place(at),
-        number(depth)
+        place(at)
     );
     say("APT0641", words).hint(
-        "less than a fiftieth of its tolerances is no position of its own; TO ends where a touch begins",
+        "it is less than a fiftieth of the tolerances, or cut vectors alone are so far, beside the path that they follow; TO ends where a touch begins",
     )
 }
 
@@ -339,7 +344,7 @@ fn path(failure: &Failure) -> Text {
             "APT0641",
             if *is_there {
                 format!(
-                    "the surface to stop at is never met {}: the tool is there at {}, but begins so, leaves the surface or gets around its end",
+                    "the surface to stop at is never met {}: the tool is there at {}, but begins so, leaves the surface, gets around its end or only touches it",
                     relation(*wanted),
                     place(at)
                 )
