@@ -11,7 +11,7 @@ use super::{Angles, Kinematics, angle_between};
 /// Radians by which directions may differ through rounding alone.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Radians by which a tool axis may miss what was asked for: the axes of CL data have six decimals.
-const REACHED: f64 = 1e-6;
+pub(super) const REACHED: f64 = 1e-6;
 /// Square of the part of a unit vector off the plane of both rotary axes that rounding leaves at a fold.
 pub(super) const FOLD: f64 = 1e-15;
 /// Degrees of a whole turn.
@@ -61,10 +61,13 @@ impl Kinematics {
     /// What solutions are sorted by: how far both axes turn, how many of them are against their preferred sign, and where
     /// these say nothing the angle of the second axis and of the first one, the positive before the negative.
     fn order(&self, angles: Angles, near: Angles) -> (i64, usize, i64, i64) {
-        // Whole steps, so that angles which only rounding tells apart stand together.
-        let steps = |degrees: f64| (degrees / EQUALLY_FAR).round() as i64;
-        let far = (angles[0] - near[0]).abs() + (angles[1] - near[1]).abs();
-        (steps(far), self.against(angles), -steps(angles[1]), -steps(angles[0]))
+        let far = Kinematics::steps_between(angles, near);
+        (far, self.against(angles), -steps(angles[1]), -steps(angles[0]))
+    }
+
+    /// How far both axes turn between two pairs of angles, in whole steps of what counts as equally far.
+    pub(super) fn steps_between(a: Angles, b: Angles) -> i64 {
+        steps((a[0] - b[0]).abs() + (a[1] - b[1]).abs())
     }
 
     /// How many of the axes stand against their preferred sign.
@@ -152,6 +155,11 @@ impl Kinematics {
         };
         self.within(which, nearest + TURN * turns).into_iter().collect()
     }
+}
+
+/// An angle in whole steps, so that angles which only rounding tells apart stand together.
+fn steps(degrees: f64) -> i64 {
+    (degrees / EQUALLY_FAR).round() as i64
 }
 
 /// The farther of both turns between two pairs of angles, degrees.

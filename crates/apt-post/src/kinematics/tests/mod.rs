@@ -1,5 +1,6 @@
 //! Numbers and laws of rotary axes.
 
+mod planning;
 mod solving;
 
 use apt_geometry::Vec3;
