@@ -3,7 +3,7 @@
 use apt_geometry::Vec3;
 
 use super::{
-    Angles, Kinematics,
+    Angles, Kinematics, angle_between,
     solve::{FOLD, ROUNDING, TURN, nearest_turn, turn_between},
 };
 
@@ -26,8 +26,7 @@ pub(super) enum Blocked {
 }
 
 impl Kinematics {
-    /// Solutions from which a stretch may begin: those of [`Kinematics::solutions`], and those by a whole turn of the second axis
-    /// beside them that are within the limits.
+    /// Solutions by a whole turn of the second axis beside those of [`Kinematics::solutions`] that are within the limits, and those.
     pub(super) fn beginnings(&self, axis: &Vec3, near: Angles) -> Vec<Angles> {
         let turned = |which: usize, angle: f64| {
             let nearest = self.turns(which, angle, near[which]);
@@ -56,13 +55,14 @@ impl Kinematics {
             return self.nearest(to, angles).ok_or_else(|| self.blocked(to, angles));
         }
         let same_side = |branch: &Angles| self.second_is_kept() || self.side(branch[1]) * side >= 0.0;
-        let Some(branch) = self.branches(to, angles).into_iter().find(same_side) else {
+        let Some(branch) = self.branches(to, angles).find(same_side) else {
             return Err(Blocked::Unreachable);
         };
         let second = nearest_turn(branch[1], angles[1]);
-        let turned = self.azimuth_change(from, to)
-            - (self.azimuth_off_second(second) - self.azimuth_off_second(angles[1])).to_degrees();
-        let first = nearest_turn(branch[0], angles[0] + turned);
+        // Of the way of the first axis the great circle makes less than half a turn of azimuth, and what the second axis changes of
+        // it on one side is less than half a turn, too.
+        let azimuth = turn_between(&self.axes[0].vector, from, to).unwrap_or(0.0);
+        let first = nearest_turn(branch[0], angles[0] + azimuth);
         if !self.reaches([first, second], to) {
             return Err(Blocked::Unreachable);
         }
@@ -110,35 +110,21 @@ impl Kinematics {
         if off * off <= FOLD * across.norm_squared() { 0.0 } else { off.signum() }
     }
 
-    /// Azimuth about the first axis, from the second one, to which the second one takes the tool; radians within half a turn of
-    /// 0, and between them without a leap on one side.
-    fn azimuth_off_second(&self, second: f64) -> f64 {
-        let [first, other] = &self.axes;
-        let place = other.turn(second) * Vec3::z();
-        let across = first.vector.cross(&other.vector);
-        across.dot(&place).atan2(across.cross(&first.vector).dot(&place))
+    /// Whether the tool axis comes to the pole between two axes; opposite ones are joined by great circles through it, too.
+    fn meets_pole(&self, from: &Vec3, to: &Vec3) -> bool {
+        self.pole_between(from, to).is_some() || angle_between(from, to) >= std::f64::consts::PI - ROUNDING
     }
 
-    /// How far the great circle between two axes turns about the first rotary axis, degrees; less than half a turn as it does not
-    /// meet the pole.
-    fn azimuth_change(&self, from: &Vec3, to: &Vec3) -> f64 {
-        turn_between(&self.axes[0].vector, from, to).unwrap_or(0.0)
-    }
-
-    /// Whether the great circle between two axes comes so near to the first rotary axis that it is along it.
-    pub(super) fn meets_pole(&self, from: &Vec3, to: &Vec3) -> bool {
-        if self.pole(from).is_some() || self.pole(to).is_some() {
-            return true;
+    /// The axis of the great circle between two axes that is nearest to the first rotary axis, where it is along it.
+    pub(super) fn pole_between(&self, from: &Vec3, to: &Vec3) -> Option<Vec3> {
+        if let Some(end) = [from, to].into_iter().find(|end| self.pole(end).is_some()) {
+            return Some(*end);
         }
-        let across = from.cross(to);
-        let Some(normal) = across.try_normalize(ROUNDING) else {
-            // As good as one axis, or opposite ones, which all great circles join.
-            return from.dot(to) < 0.0;
-        };
+        let normal = from.cross(to).try_normalize(ROUNDING)?;
         let first = self.axes[0].vector;
-        let nearest = first - normal * normal.dot(&first);
+        let nearest = (first - normal * normal.dot(&first)).try_normalize(ROUNDING)?;
         let is_between =
             |place: &Vec3| normal.dot(&from.cross(place)) >= 0.0 && normal.dot(&place.cross(to)) >= 0.0;
-        [nearest, -nearest].iter().any(|place| is_between(place) && self.pole(place).is_some())
+        [nearest, -nearest].into_iter().find(|place| is_between(place) && self.pole(place).is_some())
     }
 }

@@ -52,11 +52,17 @@ pub(crate) fn plan(
     // By whole turns of the first axis the whole way moves along: which turn will do is found out from where it leads to.
     let free = kinematics.without_limit(0);
     let mut best: Option<Walk> = None;
-    for beginning in free.beginnings(leaning, here) {
-        let walk = stretch.walk_within_limits(&free, beginning);
-        if best.as_ref().is_none_or(|best| stretch.is_better(&walk, best)) {
-            best = Some(walk);
+    let mut walk_from = |beginnings: Vec<Angles>| {
+        for beginning in beginnings {
+            let walk = stretch.walk_within_limits(&free, beginning);
+            if best.as_ref().is_none_or(|best| stretch.is_better(&walk, best)) {
+                best = Some(walk);
+            }
         }
+        best.as_ref().is_some_and(|best| best.end.is_none())
+    };
+    if !walk_from(free.solutions(leaning, here)) {
+        walk_from(free.beginnings(leaning, here));
     }
     match best {
         None => Err(unplanned(kinematics.blocked(leaning, here), first_leaning)),

@@ -18,6 +18,7 @@ pub(super) const FOLD: f64 = 1e-15;
 pub(super) const TURN: f64 = 360.0;
 /// Degrees by which ways may differ that count as equally far.
 pub(super) const EQUALLY_FAR: f64 = 1e-6;
+
 impl Kinematics {
     /// All angles within the limits that point along `axis`: the whole turns within half a turn of `near`, or where the limits
     /// exclude those the ones nearest to it. On the pole the first angle of `near` is kept. Nearest first, by the sum of both
@@ -93,12 +94,12 @@ impl Kinematics {
             || second.vector.cross(&Vec3::z()).norm() <= ROUNDING
     }
 
-    /// Where the second axis alone has to take the tool so that the first one takes it on to `axis`: one or both sides. Nothing
-    /// where there is no such place.
-    fn places(&self, axis: &Vec3, near: Angles) -> Vec<Vec3> {
+    /// Where the second axis alone has to take the tool so that the first one takes it on to the unit vector `axis`: one or both
+    /// sides. Nothing where there is no such place.
+    fn places(&self, axis: &Vec3, near: Angles) -> [Option<Vec3>; 2] {
         let [first, second] = &self.axes;
         if self.second_is_kept() {
-            return vec![second.turn(second.held_within(near[1])) * Vec3::z()];
+            return [Some(second.turn(second.held_within(near[1])) * Vec3::z()), None];
         }
         let (n1, n2) = (first.vector, second.vector);
         let (along, across) = (n1.dot(&n2), n1.cross(&n2));
@@ -108,26 +109,26 @@ impl Kinematics {
         let off = 1.0 - foot.norm_squared();
         if off > FOLD {
             let off = across * (off / square).sqrt();
-            return vec![foot + off, foot - off];
+            return [Some(foot + off), Some(foot - off)];
         }
         // Beyond the fold it is the nearest there is, and whether that will do is found out from the angles.
-        foot.try_normalize(0.0).into_iter().collect()
+        [foot.try_normalize(0.0), None]
     }
 
     /// Angles that point along an axis, less whole turns and without regard to limits.
-    pub(super) fn branches(&self, axis: &Vec3, near: Angles) -> Vec<Angles> {
+    pub(super) fn branches(&self, axis: &Vec3, near: Angles) -> impl Iterator<Item = Angles> + use<'_> {
         let [first, second] = &self.axes;
         let pole = self.pole(axis);
-        let axis = pole.unwrap_or(*axis);
-        let branch = |place: Vec3| {
-            let angle =
-                if self.second_is_kept() { None } else { turn_between(&second.vector, &Vec3::z(), &place) };
+        let axis = pole.or_else(|| axis.try_normalize(0.0)).unwrap_or(*axis);
+        let is_kept = self.second_is_kept();
+        let branch = move |place: Vec3| {
+            let angle = if is_kept { None } else { turn_between(&second.vector, &Vec3::z(), &place) };
             let angle = angle.unwrap_or(second.held_within(near[1]));
             let turned = second.turn(angle) * Vec3::z();
             let on_pole = if pole.is_some() { None } else { turn_between(&first.vector, &turned, &axis) };
             [on_pole.unwrap_or(first.held_within(near[0])), angle]
         };
-        self.places(&axis, near).into_iter().map(branch).collect()
+        self.places(&axis, near).into_iter().flatten().map(branch)
     }
 
     /// The angle, where it is within the limits of an axis or only rounding takes it beyond.

@@ -1,5 +1,6 @@
 //! Numbers and laws of rotary axes.
 
+mod dividing;
 mod planning;
 mod solving;
 

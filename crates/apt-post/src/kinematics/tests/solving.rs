@@ -132,6 +132,14 @@ fn of_solutions_that_are_as_near_the_preferred_sign_is_taken() {
 }
 
 #[test]
+fn an_axis_with_six_decimals_is_no_unit_vector_and_reached() {
+    for scale in [1.0 - 5e-7, 1.0 + 5e-7] {
+        let found = table_table().nearest(&(leaning(0.1, 0.0) * scale), [90.0, 0.0]).unwrap();
+        assert_near(&found, &[90.0, 0.1], 1e-9);
+    }
+}
+
+#[test]
 fn a_machine_with_one_rotary_axis_reaches_one_cone() {
     let held = |carried| Rotary { limits: [0.0, 0.0], ..rotary(Vec3::y(), carried, Vec3::zeros()) };
     let tilting = machine(rotary(Vec3::x(), Carried::Head, Vec3::zeros()), held(Carried::Head), 100.0);
