@@ -10,7 +10,7 @@ mod engine;
 pub mod finding;
 mod form;
 pub mod format;
-#[cfg_attr(not(test), allow(dead_code, unused_imports, reason = "the engine does not post rotary axes yet"))]
+#[cfg_attr(not(test), expect(dead_code, reason = "the engine does not post rotary axes yet"))]
 mod kinematics;
 pub mod machine;
 pub mod punch;

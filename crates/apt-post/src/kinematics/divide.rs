@@ -22,10 +22,12 @@ const FIRST_MEASURES: u32 = 4;
 const MOST_MEASURES: u32 = 64;
 /// Fraction of its length to which the longest part is found.
 const LENGTH_FOUND: f64 = 0.01;
+/// Fraction of a tolerance that a part aims at: it grows with the square of the length, which is so found half as closely.
+const AIM: f64 = 1.0 - LENGTH_FOUND;
 /// Lengths that are tried for a part: halved so many times one is as short as rounding.
 const MOST_TRIALS: u32 = 50;
-/// How much longer than the one before a part is tried.
-const GROWTH: f64 = 1.25;
+/// How many times the length of the part before it the rest of a move may be that is tried as a whole first.
+const REST_TRIED: f64 = 2.0;
 
 /// What a divided move has to keep.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -216,7 +218,7 @@ impl Divider<'_> {
         let mut kept: Option<(f64, Stand)> = None;
         let (mut least, mut broken) = (0.0, f64::INFINITY);
         // All that is left is tried first where it is not far longer than the part before.
-        let mut tried = if *length * (1.0 + GROWTH) >= rest { rest } else { *length };
+        let mut tried = if *length * REST_TRIED >= rest { rest } else { *length };
         for _ in 0..MOST_TRIALS {
             if self.patience.ends_after(1) {
                 return Err(TooMany);
@@ -226,14 +228,27 @@ impl Divider<'_> {
                 // As short as rounding: nothing keeps the tolerances.
                 break;
             }
-            match self.leg.stand(self.kinematics, last, end).filter(|stand| self.keeps(last, stand, tried)) {
-                Some(stand) => (least, kept) = (tried, Some((end, stand))),
-                None => broken = tried,
+            let stand = self.leg.stand(self.kinematics, last, end);
+            let (share, is_kept) = stand.map_or((f64::INFINITY, false), |to| self.measure(last, &to, tried));
+            if is_kept {
+                (least, kept) = (tried, stand.map(|stand| (end, stand)));
+            } else {
+                broken = tried;
             }
-            if least >= rest || broken - least <= LENGTH_FOUND * least {
+            if least >= rest
+                || broken - least <= LENGTH_FOUND * least
+                || (is_kept && share >= AIM - LENGTH_FOUND)
+            {
                 break;
             }
-            tried = if broken.is_finite() { (least + broken) / 2.0 } else { (least * GROWTH).min(rest) };
+            let aimed = tried * (AIM / share).sqrt();
+            let is_between =
+                aimed > least * (1.0 + LENGTH_FOUND / 2.0) && aimed < broken * (1.0 - LENGTH_FOUND / 2.0);
+            tried = match (is_between, broken.is_finite()) {
+                (true, true) => aimed,
+                (false, true) => (least + broken) / 2.0,
+                (_, false) => aimed.min(rest),
+            };
         }
         *length = least;
         kept.ok_or(TooMany)
@@ -254,13 +269,21 @@ impl Divider<'_> {
         }
     }
 
-    /// Whether the tool keeps the tolerances between two stands, which are so far apart in time.
+    /// Whether the tool is known to keep the tolerances between two stands, which are so far apart in time.
     fn keeps(&self, from: &Stand, to: &Stand, length: f64) -> bool {
+        self.measure(from, to, length).1
+    }
+
+    /// The share of the tolerances that the tool was measured to need between two stands, and whether it is known to keep them.
+    fn measure(&self, from: &Stand, to: &Stand, length: f64) -> (f64, bool) {
         let course = Course::new(self.kinematics, from, to, self.leg.turns.turned() * length);
         let off_ends = course.off(0.0).axis.max(course.off(1.0).axis);
         let allowed = Deviation { tip: self.tolerances.tip, axis: self.tolerances.axis + off_ends };
         let bend = course.bend();
         let mut worst = Deviation { tip: 0.0, axis: off_ends };
+        let share = |worst: &Deviation| {
+            (worst.tip / self.tolerances.tip).max((worst.axis - off_ends) / self.tolerances.axis)
+        };
         let mut measures = FIRST_MEASURES;
         let mut step = 1;
         while measures <= MOST_MEASURES {
@@ -269,19 +292,19 @@ impl Divider<'_> {
                 worst = Deviation { tip: worst.tip.max(off.tip), axis: worst.axis.max(off.axis) };
             }
             if !worst.is_within(&allowed) {
-                return false;
+                break;
             }
             let excess = 1.0 / (8.0 * f64::from(measures).powi(2));
             let most =
                 Deviation { tip: worst.tip + bend.tip * excess, axis: worst.axis + bend.axis * excess };
             if most.is_within(&allowed) {
-                return true;
+                return (share(&worst), true);
             }
             // The even ones are known.
             measures *= 2;
             step = 2;
         }
-        false
+        (share(&worst), false)
     }
 }
 

@@ -3,15 +3,12 @@
 //! A machine is a chain from the part to the tool. Angles have the sign of ISO 841: positive is the turn of the tool relative to
 //! the part about the positive axis, so that a table turns the other way.
 
-mod divide;
+pub(crate) mod divide;
 mod follow;
-mod plan;
+pub(crate) mod plan;
 mod solve;
 #[cfg(test)]
 mod tests;
-
-pub(crate) use divide::{Stand, Tolerances, TooMany, divide};
-pub(crate) use plan::{Unplanned, plan};
 
 use apt_geometry::{Vec3, canonical::matrix::sine_cosine_degrees};
 

@@ -41,11 +41,9 @@ impl Kinematics {
         turned: impl Fn(usize, f64) -> Vec<f64>,
     ) -> Vec<Angles> {
         let mut all: Vec<Angles> = Vec::new();
-        let pole = self.pole(axis);
         for branch in self.branches(axis, near) {
             let seconds = turned(1, branch[1]);
-            let firsts =
-                if pole.is_some() { vec![self.axes[0].held_within(near[0])] } else { turned(0, branch[0]) };
+            let firsts = turned(0, branch[0]);
             let pairs = seconds.iter().flat_map(|second| firsts.iter().map(|first| [*first, *second]));
             all.extend(pairs.filter(|angles| self.reaches(*angles, axis)));
         }

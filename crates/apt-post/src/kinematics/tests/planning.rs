@@ -7,7 +7,10 @@ use apt_geometry::{
 use proptest::prelude::*;
 
 use super::{
-    super::{Unplanned, angle_between, plan},
+    super::{
+        angle_between,
+        plan::{Unplanned, plan},
+    },
     *,
 };
 use crate::kinematics::Angles;
