@@ -180,7 +180,44 @@ fn any_way() -> impl Strategy<Value = Vec<Vec3>> {
     })
 }
 
+/// How many axes each beginning within the limits leads to, by trying all of them.
+fn all_reached(kinematics: &Kinematics, axes: &[Vec3]) -> Vec<usize> {
+    let free = limited(*kinematics, [[f64::NEG_INFINITY, f64::INFINITY]; 2]);
+    let mut all = Vec::new();
+    for [first, second] in free.solutions(&axes[0], [0.0, 0.0]) {
+        for turns in 0..49 {
+            let (i, j) = (turns % 7 - 3, turns / 7 - 3);
+            let begun = [first + 360.0 * f64::from(i), second + 360.0 * f64::from(j)];
+            let Ok(mut angles) = kinematics.limited(begun) else { continue };
+            let mut reached = 1;
+            for pair in axes.windows(2) {
+                let Ok(next) = kinematics.follow(&pair[0], angles, &pair[1]) else { break };
+                angles = next;
+                reached += 1;
+            }
+            all.push(reached);
+        }
+    }
+    all
+}
+
 proptest! {
+    #[test]
+    fn no_beginning_leads_farther_than_the_plan(
+        axes in any_way(), here in (-400.0..400.0_f64, -90.0..90.0_f64), which in 0..4_usize,
+        first in (-400.0..0.0_f64, 0.0..400.0_f64), second in (-120.0..0.0_f64, 0.0..300.0_f64),
+    ) {
+        let kinematics = [table_table(), head_table(), nutating(), a_and_b()][which];
+        let kinematics = limited(kinematics, [[first.0, first.1], [second.0, second.1]]);
+        let farthest = all_reached(&kinematics, &axes).into_iter().max().unwrap_or(0);
+        match planned(&kinematics, &axes, [here.0, here.1]) {
+            Ok(angles) => prop_assert_eq!(angles.len(), axes.len()),
+            Err(Unplanned::Unreachable { at } | Unplanned::Limit { at, .. }) => {
+                prop_assert!(at < axes.len() && farthest <= at, "{farthest} {at}");
+            }
+        }
+    }
+
     #[test]
     fn what_is_planned_points_along_its_axes_within_the_limits(axes in any_way(), here in -400.0..400.0_f64) {
         let limits = [[-360.0, 360.0], [-110.0, 110.0]];
