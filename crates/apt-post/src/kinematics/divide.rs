@@ -58,8 +58,8 @@ pub(crate) struct TooMany;
 /// Positions to which a straight move of the tool end whose axis turns evenly along the great circle is divided, the end included.
 ///
 /// Between them, with all slides and angles moving evenly, the tool end stays within `tolerances.tip` of its place at the same time and
-/// the tool axis within `tolerances.axis` of that of the great circle, beyond what the angles of both ends are off it (in the
-/// dead cone of the pole they are). Where the control leads the tool end, only the axis counts.
+/// the tool axis within `tolerances.axis` of that of the great circle. What the angles of positions themselves are off it comes on top:
+/// those that were told for the ends, and those in the dead cone. Where the control leads the tool end, only the axis counts.
 ///
 /// Angles go on along the great circle from those before. Where it meets the pole and the first angle is there another one than
 /// the rest of the way needs, the machine turns there, at rest in the part. Where both ends have the same axis, the angles
@@ -78,7 +78,9 @@ pub(crate) fn divide(
 ) -> Result<Vec<Stand>, TooMany> {
     let mut stands = Vec::new();
     for leg in legs(kinematics, from, to)? {
-        Divider { kinematics, leg, tolerances, patience }.divide(&mut stands)?;
+        let off = |stand: &Stand| angle_between(&kinematics.axis(stand.angles), &stand.axis);
+        let most_off = off(&leg.from).max(off(&leg.to)).max(kinematics.dead_cone);
+        Divider { kinematics, leg, tolerances, most_off, patience }.divide(&mut stands)?;
     }
     Ok(stands)
 }
@@ -190,6 +192,8 @@ struct Divider<'a> {
     kinematics: &'a Kinematics,
     leg: Leg,
     tolerances: &'a Tolerances,
+    /// Radians by which positions may themselves be off their axis: by the angles that were told for the ends, and in the dead cone.
+    most_off: f64,
     patience: Patience<'a>,
 }
 
@@ -277,19 +281,16 @@ impl Divider<'_> {
     /// The share of the tolerances that the tool was measured to need between two stands, and whether it is known to keep them.
     fn measure(&self, from: &Stand, to: &Stand, length: f64) -> (f64, bool) {
         let course = Course::new(self.kinematics, from, to, self.leg.turns.turned() * length);
-        let off_ends = course.off(0.0).axis.max(course.off(1.0).axis);
-        let allowed = Deviation { tip: self.tolerances.tip, axis: self.tolerances.axis + off_ends };
+        let ends = course.off(0.0).worse(&course.off(1.0));
+        let allowed =
+            Deviation { tip: self.tolerances.tip, axis: self.tolerances.axis + ends.axis.min(self.most_off) };
         let bend = course.bend();
-        let mut worst = Deviation { tip: 0.0, axis: off_ends };
-        let share = |worst: &Deviation| {
-            (worst.tip / self.tolerances.tip).max((worst.axis - off_ends) / self.tolerances.axis)
-        };
+        let mut worst = ends;
         let mut measures = FIRST_MEASURES;
         let mut step = 1;
         while measures <= MOST_MEASURES {
             for index in (1..measures).step_by(step) {
-                let off = course.off(f64::from(index) / f64::from(measures));
-                worst = Deviation { tip: worst.tip.max(off.tip), axis: worst.axis.max(off.axis) };
+                worst = worst.worse(&course.off(f64::from(index) / f64::from(measures)));
             }
             if !worst.is_within(&allowed) {
                 break;
@@ -298,13 +299,13 @@ impl Divider<'_> {
             let most =
                 Deviation { tip: worst.tip + bend.tip * excess, axis: worst.axis + bend.axis * excess };
             if most.is_within(&allowed) {
-                return (share(&worst), true);
+                return (worst.share(&allowed), true);
             }
             // The even ones are known.
             measures *= 2;
             step = 2;
         }
-        (share(&worst), false)
+        (worst.share(&allowed), false)
     }
 }
 
@@ -318,6 +319,16 @@ pub(super) struct Deviation {
 }
 
 impl Deviation {
+    /// The greater of both.
+    fn worse(&self, other: &Deviation) -> Deviation {
+        Deviation { tip: self.tip.max(other.tip), axis: self.axis.max(other.axis) }
+    }
+
+    /// The greater share of what is allowed.
+    fn share(&self, allowed: &Deviation) -> f64 {
+        (self.tip / allowed.tip).max(self.axis / allowed.axis)
+    }
+
     /// Whether nothing is off farther; what is no number is.
     fn is_within(&self, allowed: &Deviation) -> bool {
         self.tip <= allowed.tip && self.axis <= allowed.axis

@@ -223,6 +223,8 @@ fn what_cannot_be_divided_is_told() {
         let tolerances = Tolerances { tip: 0.1, axis: 1.0, most };
         assert_eq!(divide(&kinematics, &from, &another, &tolerances, Patience::default()), Err(TooMany));
     }
+    // Nor may the tool leave its axis for a whole turn where both ends have the same.
+    assert_eq!(divided(&kinematics, &to, &another, 0.1, 1.0), Err(TooMany));
     // Neither are opposite axes by one great circle, nor what is beyond the machine.
     let opposite = Stand { axis: -from.axis, angles: [0.0, -150.0], ..from };
     assert_eq!(divided(&kinematics, &from, &opposite, 0.1, 1.0), Err(TooMany));
