@@ -176,7 +176,11 @@ impl Leg {
         let axis = self.axis(time);
         let angles = match self.turns {
             Turns::Angles => between(self.from.angles, self.to.angles, time),
-            Turns::Axis { .. } => kinematics.follow(&last.axis, last.angles, &axis).ok()?,
+            Turns::Axis { .. } => {
+                // Where both ends are near a limit the great circle may lead beyond it, and at the limit is near enough.
+                let angles = kinematics.followed(&last.axis, last.angles, &axis).ok()?;
+                [0, 1].map(|which| kinematics.axes[which].held_within(angles[which]))
+            }
         };
         Some(Stand { tip: self.tip(time), axis, angles })
     }

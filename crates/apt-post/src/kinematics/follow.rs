@@ -45,11 +45,16 @@ impl Kinematics {
         self.chosen(axis, near, turned)
     }
 
+    /// The angles at `to` when the tool axis turns there evenly, as [`Kinematics::followed`], where no limit excludes them.
+    pub(super) fn follow(&self, from: &Vec3, angles: Angles, to: &Vec3) -> Result<Angles, Blocked> {
+        self.limited(self.followed(from, angles, to)?)
+    }
+
     /// The angles at `to` when the tool axis turns there evenly from `from`, where the machine stands at `angles`.
     ///
-    /// The side is kept: between the sides the machine changes only at a fold or on the pole, where a solution is taken that is
-    /// nearest within the limits. Both angles are followed continuously, however far the first one has to turn.
-    pub(super) fn follow(&self, from: &Vec3, angles: Angles, to: &Vec3) -> Result<Angles, Blocked> {
+    /// The side is kept, whatever the limits: between the sides the machine changes only at a fold or on the pole, where a solution
+    /// is taken that is nearest within the limits. Both angles are followed continuously, however far the first one has to turn.
+    pub(super) fn followed(&self, from: &Vec3, angles: Angles, to: &Vec3) -> Result<Angles, Blocked> {
         let side = self.side(angles[1]);
         if self.pole(to).is_some() || self.meets_pole(from, to) || (side == 0.0 && !self.second_is_kept()) {
             return self.nearest(to, angles).ok_or_else(|| self.blocked(to, angles));
@@ -63,10 +68,7 @@ impl Kinematics {
         // it on one side is less than half a turn, too.
         let azimuth = turn_between(&self.axes[0].vector, from, to).unwrap_or(0.0);
         let first = nearest_turn(branch[0], angles[0] + azimuth);
-        if !self.reaches([first, second], to) {
-            return Err(Blocked::Unreachable);
-        }
-        self.limited([first, second])
+        if self.reaches([first, second], to) { Ok([first, second]) } else { Err(Blocked::Unreachable) }
     }
 
     /// The angles, if no limit excludes them.

@@ -196,6 +196,21 @@ fn in_the_dead_cone_the_ends_may_be_off_by_as_much() {
 }
 
 #[test]
+fn at_a_limit_the_great_circle_may_lead_beyond_it_by_the_tolerance() {
+    let kinematics = limited(table_table(), [[-360.0, 360.0], [-110.0, 110.0]]);
+    let from = stand(&kinematics, [40.0, 20.0, 10.0], leaning(110.0, -90.0), [0.0, 110.0]);
+    let to = stand(&kinematics, [60.0, 20.0, 10.0], leaning(110.0, -70.0), [20.0, 110.0]);
+    let middle = from.axis.slerp(&to.axis, 0.5);
+    let beyond = middle.z.acos().to_degrees() - 110.0;
+    assert!((0.2..0.4).contains(&beyond), "{beyond}");
+    let stands = divided(&kinematics, &from, &to, 0.01, 0.5).unwrap();
+    assert!(stands.len() > 10 && stands.iter().all(|stand| stand.angles[1] <= 110.0));
+    let (tip, axis) = farthest_off(&kinematics, &from, &stands);
+    assert!(tip <= 0.01 && axis.to_degrees() <= 0.5, "{tip} {axis}");
+    assert_eq!(divided(&kinematics, &from, &to, 0.01, 0.2), Err(TooMany));
+}
+
+#[test]
 fn close_to_the_pole_the_table_turns_far_in_small_parts() {
     let kinematics = table_table();
     let from = stand(&kinematics, [40.0, 20.0, 10.0], leaning(1.0, -90.0), [0.0, 0.0]);
