@@ -106,6 +106,8 @@ pub struct Location {
     pub rapid: bool,
     /// The tool end.
     pub at: [f64; 3],
+    /// The direction of the tool, upright where none is told.
+    pub axis: [f64; 3],
     /// It comes from FROM: the tool is there, nothing moves.
     pub from: bool,
 }
@@ -122,7 +124,10 @@ pub fn path_of(report: &Value) -> Vec<Location> {
                 let isn = entry["isn"].as_u64().unwrap_or(0);
                 for point in entry["points"].as_array().into_iter().flatten() {
                     let number = |index: usize| point[index].as_f64().expect("a coordinate is a number");
-                    path.push(Location { isn, rapid, at: [number(0), number(1), number(2)], from });
+                    let axis = [3, 4, 5].map(|index| point[index].as_f64());
+                    let axis =
+                        if let [Some(i), Some(j), Some(k)] = axis { [i, j, k] } else { [0.0, 0.0, 1.0] };
+                    path.push(Location { isn, rapid, at: [number(0), number(1), number(2)], axis, from });
                 }
                 rapid &= from;
             }

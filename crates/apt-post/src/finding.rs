@@ -156,6 +156,28 @@ pub enum PostFindingKind {
     FunctionOfWord { word: SmolStr, code: SmolStr, owner: SmolStr },
     #[error("{word} has {length} characters of text, a card holds {limit}")]
     TextTooLong { word: SmolStr, length: usize, limit: usize },
+    #[error(
+        "no angles of the rotary axes point the tool along {i} {j} {k}; {positions} positions are left out from here on"
+    )]
+    AxisUnreachable { i: f64, j: f64, k: f64, positions: u32 },
+    #[error(
+        "{axis} {angle} is outside {least} to {greatest}; {positions} positions are left out from here on"
+    )]
+    RotaryLimit { axis: SmolStr, angle: f64, least: f64, greatest: f64, positions: u32 },
+    #[error("{axis} is turned from {from} back to {to}, with the tool off the part")]
+    RotaryTurnedBack { axis: SmolStr, from: f64, to: f64 },
+    #[error("{axis} turns by {degrees} degrees where the tool turns by {turned}")]
+    RotarySwing { axis: SmolStr, degrees: f64, turned: f64 },
+    #[error("more than {most} blocks would be needed to keep the tool on its way; the motion is left out")]
+    TooManyParts { most: usize },
+    #[error("the head leans while the length of the tool is unknown")]
+    NoToolLength,
+    #[error("cutter compensation while rotary axes turn")]
+    CompensationTurns,
+    #[error("the machine turns between two holes of a cycle")]
+    CycleTurns,
+    #[error("{word}: a tool that lies does not come to the clearance plane")]
+    ClearanceNotReached { word: SmolStr },
     #[error("{word} turns an axis that this machine does not have; nothing is made of it")]
     NoRotaryAxis { word: SmolStr },
 }
@@ -204,6 +226,9 @@ impl PostFindingKind {
             | Kind::FunctionOfWord { .. }
             | Kind::TextTooLong { .. }
             | Kind::NoRotaryAxis { .. }
+            | Kind::RotaryTurnedBack { .. }
+            | Kind::RotarySwing { .. }
+            | Kind::CycleTurns
             | Kind::AfterFini
             | Kind::MotionAfterEnd => Severity::Warning,
             _ => Severity::Error,

@@ -17,12 +17,12 @@ pub enum Treatment {
 }
 
 /// Words that the engine acts on.
-const ON_TAPE: [&str; 45] = [
+const ON_TAPE: [&str; 51] = [
     "ARCDAT", "ARCMOV", "ARCSLP", "AUXFUN", "CLEARP", "CLRSRF", "COOLNT", "CUTCOM", "CYCLE", "DELAY",
     "DELETE", "DISPLY", "DWELL", "END", "FEDRAT", "GOCLER", "GOHOME", "INSERT", "ISTOP", "LOAD", "LOADTL",
     "MCHTOL", "MOVARC", "OFSTNO", "OPSKIP", "OPSTOP", "ORIGIN", "PARTNO", "PLUNGE", "PPRINT", "PREFUN",
     "RAPID", "RETRCT", "REWIND", "SELCTL", "SELECT", "SEQNO", "SET", "SPINDL", "STOP", "TOOLNO", "TPRINT",
-    "TRANS", "TURRET", "UNLOAD",
+    "TRANS", "TURRET", "UNLOAD", "LINTOL", "MAXDPM", "PIVOTZ", "ROTABL", "ROTATE", "ROTHED",
 ];
 /// Words of the processor, of listings, of plots and of the punch.
 const SILENT: [&str; 37] = [
@@ -68,12 +68,12 @@ const SILENT: [&str; 37] = [
     "WCORN",
 ];
 /// Words for which a three-axis mill has nothing.
-const NOT_SUPPORTED: [&str; 54] = [
+const NOT_SUPPORTED: [&str; 48] = [
     "AIR", "ALIGN", "ASLOPE", "BREAK", "CAM", "CHECK", "CHUCK", "CLAMP", "CORNFD", "COUPLE", "DRESS",
-    "FACEML", "HEAD", "IFRO", "INTCOD", "LINTOL", "LOCKX", "MAGTAP", "MAXDPM", "MAXVEL", "MDEND", "MDWRIT",
-    "MODE", "MOVETO", "PALLET", "PBS", "PICKUP", "PITCH", "PIVOTZ", "POSITN", "POSMAP", "POSTN", "PPFUN",
-    "PROBX", "PROBY", "QUILL", "RESET", "REVERS", "ROTABL", "ROTATE", "ROTHED", "SADDLE", "SAFETY", "SLOWDN",
-    "SMOOTH", "SWITCH", "TAILST", "THREAD", "TLAXIS", "TMARK", "ULOCKX", "VACUUM", "ZERO", "POD",
+    "FACEML", "HEAD", "IFRO", "INTCOD", "LOCKX", "MAGTAP", "MAXVEL", "MDEND", "MDWRIT", "MODE", "MOVETO",
+    "PALLET", "PBS", "PICKUP", "PITCH", "POSITN", "POSMAP", "POSTN", "PPFUN", "PROBX", "PROBY", "QUILL",
+    "RESET", "REVERS", "SADDLE", "SAFETY", "SLOWDN", "SMOOTH", "SWITCH", "TAILST", "THREAD", "TLAXIS",
+    "TMARK", "ULOCKX", "VACUUM", "ZERO", "POD",
 ];
 
 /// What becomes of a word; `None` for one that the post-processor does not know.
@@ -98,7 +98,13 @@ struct Form {
 
 /// Words whose arguments are few enough to be listed. The statements of FEDRAT, SPINDL, COOLNT, CUTCOM and CYCLE know
 /// their own minor words and are left out when one is unknown.
-const FORMS: [Form; 24] = [
+const FORMS: [Form; 30] = [
+    Form { word: "LINTOL", numbers: 1, minors: &["ON", "OFF"] },
+    Form { word: "MAXDPM", numbers: 1, minors: &[] },
+    Form { word: "PIVOTZ", numbers: 1, minors: &[] },
+    Form { word: "ROTABL", numbers: 1, minors: ANY },
+    Form { word: "ROTHED", numbers: 1, minors: ANY },
+    Form { word: "ROTATE", numbers: 1, minors: ANY },
     Form { word: "SPINDL", numbers: 1, minors: ANY },
     Form { word: "COOLNT", numbers: 0, minors: ANY },
     Form { word: "CUTCOM", numbers: 1, minors: ANY },
@@ -130,9 +136,9 @@ const FORMS: [Form; 24] = [
 const ANY: &[&str] = &["*"];
 
 /// Minor words that take the number after them.
-const WITH_NUMBER: [&str; 17] = [
-    "ADJUST", "CLEAR", "DEPTH", "DIAMTR", "DWELL", "FEDTO", "INCR", "LENGTH", "MAXIPM", "MAXRPM", "OFFSET",
-    "OSETNO", "RADIUS", "RANGE", "RAPTO", "STEP", "TPI",
+const WITH_NUMBER: [&str; 19] = [
+    "ADJUST", "ATANGL", "AXIS", "CLEAR", "DEPTH", "DIAMTR", "DWELL", "FEDTO", "INCR", "LENGTH", "MAXIPM",
+    "MAXRPM", "OFFSET", "OSETNO", "RADIUS", "RANGE", "RAPTO", "STEP", "TPI",
 ];
 /// Minor words of which a statement may say one.
 const EXCLUSIVE: [&[&str]; 9] = [

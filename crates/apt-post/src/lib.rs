@@ -10,7 +10,6 @@ mod engine;
 pub mod finding;
 mod form;
 pub mod format;
-#[cfg_attr(not(test), expect(dead_code, reason = "the engine does not post rotary axes yet"))]
 mod kinematics;
 pub mod machine;
 pub mod punch;

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
 mod interpreter;
+#[path = "rs274/rotary.rs"]
+mod rotary;
 
 use apt_cldata::{
     record::{ClKind, ClRecord},

@@ -14,7 +14,7 @@ use apt_run::{
     settings::Settings,
 };
 
-/// The machine for which samples of tape codes are posted.
+/// The machine for which samples of tape codes are posted where the page names none.
 const MACHINE: &str = "linuxcnc-mill3";
 
 /// The codes that stand in quotation marks in the sources of the catalogue and its rooms.
@@ -53,7 +53,7 @@ fn diagnostics(page: &Page, text: &str) -> Vec<Diagnostic> {
     let mut list = document.diagnostics(Level::Motion, &|| false, &mut |_, _| {}).unwrap();
     if is_tape_code(&page.code) {
         let result = document.run(&|| false, &mut |_, _| {}).unwrap();
-        let machine = apt_post::machine(MACHINE).unwrap();
+        let machine = apt_post::machine(page.machine.as_deref().unwrap_or(MACHINE)).unwrap();
         let options = apt_post::PostOptions { default_units: Units::Inches, ..Default::default() };
         let mut tape = apt_post::post(&result.records, &machine, &options);
         if page.code == "APT0898" {

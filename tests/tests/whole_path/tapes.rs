@@ -2,16 +2,23 @@
 
 use std::collections::BTreeSet;
 
+use apt_geometry::Vec3;
 use apt_ide::Analysis;
+use apt_ide::difference::Units;
 use apt_tests::{
     oracle::programs,
     runs::{Location, analysis, examples, path_of, read, report, title},
 };
 use serde_json::Value;
 
-use crate::interpreter::{Call, follow, interpret};
+use crate::interpreter::{
+    Call, follow, interpret,
+    rotary::{Goal, follow_turning, moves as joints},
+};
 
 const MACHINE: &str = "linuxcnc-mill3";
+/// One on which the tool may lean, its tolerance in millimetres and degrees.
+const FIVE_AXES: (&str, f64, f64) = ("linuxcnc-mill5", 0.025, 0.1);
 
 /// Programs whose tape the machine cannot make, and why; the test fails when this list is wrong in either direction.
 const NO_TAPE: [(&str, &str); 0] = [];
@@ -103,4 +110,39 @@ fn every_oracle_program_runs_to_its_end_along_its_path() {
     assert_eq!(without, listed);
     assert!(NO_TAPE.iter().all(|(_, reason)| reason.len() > 10), "every entry says why");
     assert!(count > 70, "{count} tapes");
+}
+
+/// Where the tool leans and turns the tables follow it: their joints keep the tool end on its way.
+#[test]
+fn tapes_of_tools_that_lean_keep_them_on_their_way() {
+    let (machine, tip, axis) = FIVE_AXES;
+    let (mut count, mut blocks) = (0, 0);
+    for group in ["multaxis", "apt4-motion"] {
+        for path in programs(group) {
+            let analysis = analysis(&with_feed(&read(&path)), "free");
+            let report = report(&analysis).unwrap();
+            let locations = path_of(&report);
+            if locations.iter().all(|location| location.axis == [0.0, 0.0, 1.0]) {
+                continue;
+            }
+            let tape = analysis.tape(machine, &|| false, &mut |_, _| {}).unwrap().tape;
+            assert!(tape.is_ok(), "{}: {:?}", title(&path), tape.findings);
+            let goals: Vec<Goal> = locations
+                .iter()
+                .filter(|location| !location.from)
+                .map(|location| Goal {
+                    rapid: location.rapid,
+                    tip: location.at.into(),
+                    axis: Vec3::from(location.axis).normalize(),
+                })
+                .collect();
+            println!("{}", title(&path));
+            let inches = tape.units == Units::Inches;
+            let moves = joints(&tape.text(), &tools(&report).into_iter().collect::<Vec<_>>());
+            follow_turning(&moves, &goals, inches, tip, axis);
+            (count, blocks) = (count + 1, blocks + moves.len());
+        }
+    }
+    println!("{count} tapes of {blocks} moves");
+    assert!(count > 5, "{count} tapes");
 }

@@ -20,7 +20,9 @@ impl Engine<'_> {
     /// The cycle as single moves.
     pub(super) fn expand(&mut self, cycle: &Cycle, top: Vec3, plane: f64, level: f64) {
         let stops = cycle.name == SHIFT;
-        if cycle.taps() || stops && self.machine.codes.spindle_orient.is_none() {
+        // The directions in which a tool steps aside are those of an upright spindle.
+        let aside = stops && (self.machine.codes.spindle_orient.is_none() || !self.is_upright());
+        if cycle.taps() || aside {
             return self.find(PostFindingKind::CycleNotPossible { cycle: cycle.word.clone() });
         }
         if cycle.holes == 1 {
@@ -35,10 +37,9 @@ impl Engine<'_> {
     }
 
     fn expanded_hole(&mut self, cycle: &Cycle, top: Vec3, plane: f64, level: f64) {
-        let at = |z: f64| Vec3::new(top.x, top.y, z);
-        let over = self.position.map_or(level, |position| position.z);
-        self.rapid_to(at(over));
-        self.rapid_to(at(plane));
+        let over = self.position.map_or(level, |position| self.height(&position));
+        self.rapid_to(self.at_height(&top, over));
+        self.rapid_to(self.at_height(&top, plane));
         self.passes(cycle, top, plane);
         if cycle.dwell > 0.0 {
             self.dwell_block(cycle.dwell);
@@ -47,7 +48,7 @@ impl Engine<'_> {
             return self.step_aside(cycle, top, level);
         }
         if cycle.name == "ream" {
-            self.feed_down(at(plane), cycle.feed);
+            self.feed_down(self.at_height(&top, plane), cycle.feed);
         }
         // A boring tool that turns would cut a groove on its way out.
         let stops = cycle.name == "bore" && self.spindle.on;
@@ -55,7 +56,7 @@ impl Engine<'_> {
             let machine = self.machine;
             self.control.code(&machine.codes.spindle_off);
         }
-        self.rapid_to(at(level));
+        self.rapid_to(self.at_height(&top, level));
         if stops {
             self.spindle_again();
         }
@@ -63,8 +64,7 @@ impl Engine<'_> {
 
     /// Down to the bottom of a hole, in steps where the cycle has some.
     fn passes(&mut self, cycle: &Cycle, top: Vec3, plane: f64) {
-        let at = |z: f64| Vec3::new(top.x, top.y, z);
-        let bottom = top.z - cycle.depth;
+        let bottom = self.height(&top) - cycle.depth;
         let gap = self.tape_length(PECK_GAP_MM);
         let step = cycle.step.unwrap_or(cycle.depth + cycle.clearance);
         let passes = (((plane - bottom) / step).ceil() as u32).clamp(1, MOST_PASSES);
@@ -73,12 +73,12 @@ impl Engine<'_> {
                 return;
             }
             let depth = if pass == passes { bottom } else { plane - step * f64::from(pass) };
-            self.feed_down(at(depth), cycle.feed);
+            self.feed_down(self.at_height(&top, depth), cycle.feed);
             if pass < passes {
                 let lifted = if cycle.name == "chipbreak" { depth + gap } else { plane };
-                self.rapid_to(at(lifted));
+                self.rapid_to(self.at_height(&top, lifted));
                 if cycle.name == "peck" {
-                    self.rapid_to(at(depth + gap));
+                    self.rapid_to(self.at_height(&top, depth + gap));
                 }
             }
         }
@@ -97,16 +97,17 @@ impl Engine<'_> {
             (_, None) => {}
         }
         let (x, y) = cycle.shift.unwrap_or_default();
-        let bottom = top.z - cycle.depth;
-        self.rapid_to(Vec3::new(top.x + x, top.y + y, bottom));
-        self.rapid_to(Vec3::new(top.x + x, top.y + y, level));
-        self.rapid_to(Vec3::new(top.x, top.y, level));
+        let bottom = self.height(&top) - cycle.depth;
+        let aside = top + Vec3::new(x, y, 0.0);
+        self.rapid_to(self.at_height(&aside, bottom));
+        self.rapid_to(self.at_height(&aside, level));
+        self.rapid_to(self.at_height(&top, level));
         self.spindle_again();
     }
 
     fn feed_down(&mut self, position: Vec3, feed: Option<f64>) {
         let machine = self.machine;
-        let mut words = Self::axis_words(position);
+        let mut words = self.axis_words(position);
         words.extend(feed.map(|value| Word { register: "F", value, force: false }));
         if self.feed_mode(&machine.codes.feed_per_minute) {
             self.control.code(&machine.codes.feed_per_minute);

@@ -333,7 +333,7 @@ impl Engine<'_> {
     }
 
     /// What the tool goes in a minute at the feed in force; none of an inverse time, which tells nothing of a hole.
-    fn feed_in_force(&self) -> Option<f64> {
+    pub(super) fn feed_in_force(&self) -> Option<f64> {
         let feed = self.feed?;
         match feed.mode {
             FeedMode::PerMinute => Some(feed.value),
@@ -467,11 +467,12 @@ impl Engine<'_> {
     /// One hole with its top at `top`.
     pub(super) fn hole(&mut self, top: Vec3) {
         let Some(mut cycle) = self.cycle.take() else { return };
-        let plane = top.z + cycle.clearance;
+        let plane = self.height(&top) + cycle.clearance;
         cycle.holes += 1;
         if self.approach.is_some() {
-            self.rapid_to(Vec3::new(top.x, top.y, plane));
+            self.rapid_to(self.at_height(&top, plane));
         }
+        self.follow_for_cycle();
         if self.compensating && cycle.holes == 1 {
             self.find(PostFindingKind::CompensationLeftOn { word: "CYCLE".into() });
         }
@@ -492,9 +493,11 @@ impl Engine<'_> {
         }
         self.check_tool();
         self.work_offset_now();
+        self.turn_now();
         let level = self.level(&mut cycle, top, plane);
         let machine = self.machine;
-        match machine.cycles.get(&cycle.name) {
+        let made = machine.cycles.get(&cycle.name).filter(|_| self.makes_cycles());
+        match made {
             Some(template) if !template.each.is_empty() => {
                 let values = self.cycle_values(&cycle, top, plane, level);
                 for _ in 0..cycle.times {
@@ -507,9 +510,9 @@ impl Engine<'_> {
             Some(template) => self.canned(&mut cycle, template, top, plane, level),
             None => self.expand(&cycle, top, plane, level),
         }
-        self.position = Some(self.rounded(Vec3::new(top.x, top.y, level)));
+        self.position = Some(self.rounded(self.at_height(&top, level)));
         // A control with the cycle holds the bottom of the hole as its last Z, and stands elsewhere.
-        if machine.cycles.contains_key(&cycle.name) {
+        if made.is_some() {
             self.control.forget(&[AXES[2]]);
         }
         self.cycle = Some(cycle);
@@ -519,25 +522,24 @@ impl Engine<'_> {
     /// where the tool is, it is taken there first, and so it is to a clearance plane above it: the control goes back to
     /// where the tool stood when the cycle began, and on the way to the next hole it does not look for a wall.
     fn level(&mut self, cycle: &mut Cycle, top: Vec3, plane: f64) -> f64 {
-        let here = self.position.map_or(plane, |position| position.z);
+        let here = self.position.map_or(plane, |position| self.height(&position));
         let (start, level) = match cycle.retract {
             Retract::Initial => (here.max(plane), here.max(plane)),
             Retract::Above(height) if self.same(height, cycle.clearance) => (here.max(plane), plane),
             Retract::Above(height) => {
-                let wanted = (top.z + height).max(plane);
+                let wanted = (self.height(&top) + height).max(plane);
                 (wanted, wanted)
             }
         };
         if !self.same(start, here) {
             self.cancel(cycle);
             cycle.open = None;
-            let (x, y) = self.position.map_or((top.x, top.y), |position| (position.x, position.y));
             // Up where the tool stands, down over the hole.
             if start > here {
-                self.rapid_to(Vec3::new(x, y, start));
+                self.rapid_to(self.at_height(&self.position.unwrap_or(top), start));
             } else {
-                self.rapid_to(Vec3::new(top.x, top.y, here));
-                self.rapid_to(Vec3::new(top.x, top.y, start));
+                self.rapid_to(self.at_height(&top, here));
+                self.rapid_to(self.at_height(&top, start));
             }
         }
         level
@@ -546,6 +548,11 @@ impl Engine<'_> {
     /// Whether two heights are the same number on the tape.
     fn same(&self, a: f64, b: f64) -> bool {
         self.control.rounded(AXES[2], a) == self.control.rounded(AXES[2], b)
+    }
+
+    /// Clearance of the cycle in force, and how many holes it has made.
+    pub(super) fn cycle_so_far(&self) -> (f64, usize) {
+        self.cycle.as_ref().map_or((0.0, 0), |cycle| (cycle.clearance, cycle.holes))
     }
 
     fn cycle_values(&self, cycle: &Cycle, top: Vec3, plane: f64, level: f64) -> Values {

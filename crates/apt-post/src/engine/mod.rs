@@ -3,12 +3,15 @@
 mod expansion;
 mod hole;
 mod motion;
+mod rotary_statement;
 mod start;
 mod statement;
 mod tool;
+mod turn;
+mod turning;
 mod work_offset;
 
-use apt_cldata::record::{ClKind, ClPoint, ClRecord, ClWord, POSITIONS_A_UNIT, Units};
+use apt_cldata::record::{ClKind, ClRecord, ClWord, Units};
 use apt_geometry::{
     Vec3,
     patience::{Patience, put_away},
@@ -70,12 +73,13 @@ fn made(
     patience: Patience<'_>,
 ) -> Tape {
     let units = start::units(records, machine, options, patience);
-    let mut engine = Engine::new(machine, options, &units, patience);
+    let mut engine = Engine::new(records, machine, options, &units, patience);
     engine.start(records);
-    for record in records {
+    for (at, record) in records.iter().enumerate() {
         if patience.ends_after(1) {
             break;
         }
+        engine.at = at;
         engine.record(record);
     }
     engine.finish();
@@ -117,7 +121,7 @@ struct RunPoint {
     circle: Option<usize>,
 }
 
-/// A circle record, in tape units.
+/// A circle record, as the part has it, in tape units.
 #[derive(Debug, Clone, Copy)]
 struct Circle {
     center: Vec3,
@@ -133,6 +137,9 @@ struct PendingCompensation {
 
 struct Engine<'a> {
     patience: Patience<'a>,
+    records: &'a [ClRecord],
+    /// Index of the record that is being made.
+    at: usize,
     control: Control<'a>,
     machine: &'a MachineDefinition,
     fit_points: bool,
@@ -141,7 +148,9 @@ struct Engine<'a> {
     /// Unit of the program and factor from it to the tape's.
     program_units: Units,
     scale: f64,
-    /// Where the tool is, in tape units, as far as it is known.
+    /// The rotary axes, on a machine that has any.
+    turning: Option<turning::Turning<'a>>,
+    /// Where the tool is on the tape, as far as it is known.
     position: Option<Vec3>,
     /// Whether it may stand elsewhere, since blocks that may be skipped have come after it was last told where to go.
     skipped: bool,
@@ -191,8 +200,8 @@ struct Engine<'a> {
     retracted_from: Option<f64>,
     shift: Vec3,
     moved: bool,
-    /// The finding about the motions that are left out for the tool's axis, until one can be carried out again.
-    tilted: Option<usize>,
+    /// The finding about what is left out for the tool's axis, until something can be carried out again.
+    missing: Option<usize>,
     /// Whether a FROM has been seen.
     started: bool,
     ended: bool,
@@ -205,13 +214,21 @@ struct Engine<'a> {
 
 impl<'a> Engine<'a> {
     fn new(
+        records: &'a [ClRecord],
         machine: &'a MachineDefinition,
         options: &PostOptions,
         units: &start::UnitChoice,
         patience: Patience<'a>,
     ) -> Self {
+        let unit = match units.tape {
+            Units::Inches => MILLIMETERS_PER_INCH.recip(),
+            Units::Millimeters => 1.0,
+        };
         Engine {
             patience,
+            records,
+            at: 0,
+            turning: turning::Turning::of(machine, unit),
             control: Control::new(machine, units.tape),
             machine,
             fit_points: options.fit_points.unwrap_or(machine.arc.fit_points),
@@ -255,7 +272,7 @@ impl<'a> Engine<'a> {
             retracted_from: None,
             shift: Vec3::zeros(),
             moved: false,
-            tilted: None,
+            missing: None,
             started: false,
             ended: false,
             closed: false,
@@ -276,8 +293,8 @@ impl<'a> Engine<'a> {
         match &record.kind {
             ClKind::Motion { from, points, .. } => self.motion(*from, points),
             ClKind::Arc { center, axis, .. } => {
-                let center = (center + self.shift) * self.scale;
-                self.circles.push(Circle { center, axis: *axis });
+                let (center, axis) = self.in_part((center + self.shift) * self.scale, *axis);
+                self.circles.push(Circle { center, axis });
                 self.next_circle = Some(self.circles.len() - 1);
             }
             ClKind::Control { word, arguments, .. } => self.parameter(word, arguments),
@@ -343,7 +360,8 @@ impl<'a> Engine<'a> {
             .text("coolant_off", off(self.coolant, &machine.codes.coolant_off))
             .text("spindle_off", off(self.spindle.on, &machine.codes.spindle_off))
             .number("Z", 0.0);
-        self.control.templates(&machine.templates.program_end, &values);
+        self.follow_no_more(false);
+        self.home_blocks(&machine.templates.program_end, values);
         self.spindle.on = false;
         self.coolant = false;
     }
@@ -402,44 +420,26 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// The positions of a motion on the tape, as far as the tool stands as the spindle does; one finding for all
-    /// motions in a row that it does not.
-    fn tape_positions(&mut self, points: &[ClPoint]) -> Vec<Vec3> {
-        let mut positions = Vec::with_capacity(points.len());
-        let (mut tilted, mut infinite) = (None, false);
-        for (done, point) in points.iter().enumerate() {
-            if self.patience.ends_among(done, POSITIONS_A_UNIT) {
-                break;
-            }
-            let axis = point.axis;
-            let position = (point.position + self.shift) * self.scale;
-            if point.with_axis && (axis.z <= 0.0 || axis.z < SPINDLE_AXIS_COSINE * axis.norm()) {
-                tilted = tilted.or(Some(axis));
-            } else if position.iter().all(|value| value.is_finite()) {
-                positions.push(position);
-            } else {
-                infinite = true;
-            }
-        }
-        self.left_out(tilted);
-        if infinite {
-            self.find(PostFindingKind::NotFinite);
-        }
-        positions
-    }
-
-    /// Counts a motion that is left out because of the tool axis there, or notes that this one is not.
-    fn left_out(&mut self, axis: Option<Vec3>) {
-        let Some(axis) = axis else {
-            self.tilted = None;
+    /// Counts a position or motion that is left out, or notes that this one is not.
+    fn left_out(&mut self, missing: Option<PostFindingKind>) {
+        use PostFindingKind as Kind;
+        let Some(missing) = missing else {
+            self.missing = None;
             return;
         };
-        let before = self.tilted.and_then(|finding| self.control.findings.get_mut(finding));
-        if let Some(PostFindingKind::ToolAxis { motions, .. }) = before.map(|finding| &mut finding.kind) {
-            *motions = motions.saturating_add(1);
-        } else {
-            self.tilted = Some(self.control.findings.len());
-            self.find(PostFindingKind::ToolAxis { i: axis.x, j: axis.y, k: axis.z, motions: 1 });
+        let before = self.missing.and_then(|finding| self.control.findings.get_mut(finding));
+        let count = match (before.map(|finding| &mut finding.kind), &missing) {
+            (Some(Kind::ToolAxis { motions, .. }), Kind::ToolAxis { .. }) => Some(motions),
+            (Some(Kind::AxisUnreachable { positions, .. }), Kind::AxisUnreachable { .. })
+            | (Some(Kind::RotaryLimit { positions, .. }), Kind::RotaryLimit { .. }) => Some(positions),
+            _ => None,
+        };
+        match count {
+            Some(count) => *count = count.saturating_add(1),
+            None => {
+                self.missing = Some(self.control.findings.len());
+                self.find(missing);
+            }
         }
     }
 }

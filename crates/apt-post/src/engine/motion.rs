@@ -3,7 +3,7 @@
 use apt_cldata::record::{ClPoint, POSITIONS_A_UNIT};
 use apt_geometry::Vec3;
 
-use super::{Engine, Feed, RunPoint};
+use super::{Engine, Feed, RunPoint, turning::Way};
 use crate::{
     arc::{self, Arc, ArcLimits},
     control::{Values, Word},
@@ -26,30 +26,36 @@ const DEFAULT_OUTTOL_MM: f64 = 0.0127;
 impl Engine<'_> {
     pub(super) fn motion(&mut self, from: bool, points: &[ClPoint]) {
         let circle = self.next_circle.take();
-        let positions = self.tape_positions(points);
+        let targets = self.targets(from, points);
         if from {
             self.flush();
-            if !positions.is_empty() && std::mem::replace(&mut self.started, true) {
+            if !targets.is_empty() && std::mem::replace(&mut self.started, true) {
                 self.find(PostFindingKind::Repeated { word: "FROM".into() });
             }
             // FROM says where the tool stands; the tape says nothing of it.
-            self.position = positions.last().copied().or(self.position);
+            if let Some(target) = targets.last() {
+                self.stand_at(target);
+            }
             return;
         }
-        if self.ended && !positions.is_empty() {
+        if self.ended && !targets.is_empty() {
             self.find(PostFindingKind::MotionAfterEnd);
             self.restart();
         }
-        self.moved |= !positions.is_empty();
+        self.moved |= !targets.is_empty();
+        if self.is_followed() {
+            self.flush();
+            self.follow();
+        }
         if self.rapid.is_some() {
             self.flush();
             self.rapid = None;
-            for position in positions {
+            for target in &targets {
                 if self.patience.ends_after(1) {
                     return;
                 }
                 self.leave_cycle();
-                self.rapid_to(position);
+                self.rapid_target(target);
             }
             self.rapid_axis = None;
         } else if self.cycle.is_some() {
@@ -57,19 +63,24 @@ impl Engine<'_> {
             if circle.is_some() {
                 self.circle_in_cycle();
             }
-            for position in positions {
+            for target in &targets {
                 if self.patience.ends_after(1) {
                     return;
                 }
-                self.hole(position);
+                self.hole_target(target);
             }
-        } else if !self.leaves_out(positions.len()) {
+        } else if !self.leaves_out(targets.len()) {
             let place = self.control.place;
-            for (done, position) in positions.into_iter().enumerate() {
+            for (done, target) in targets.iter().enumerate() {
                 if self.patience.ends_among(done, POSITIONS_A_UNIT) {
                     return;
                 }
-                self.run.push(RunPoint { position, place, circle });
+                match self.way(target) {
+                    Way::Straight(position) => self.run.push(RunPoint { position, place, circle }),
+                    Way::Turning(angles) => self.cut_turning(target, angles),
+                    Way::Back(back, to) => self.cut_turned_back(target, back, to),
+                    Way::Nowhere => {}
+                }
             }
         }
     }
@@ -83,7 +94,11 @@ impl Engine<'_> {
         )
     }
 
-    fn check_travel(&mut self, position: Vec3) {
+    /// Where the control follows the tool end itself, nobody knows here where the slides stand.
+    pub(super) fn check_travel(&mut self, position: Vec3) {
+        if self.turning.as_ref().is_some_and(|turning| !turning.kinematics.slides) {
+            return;
+        }
         for (name, value) in AXES.into_iter().zip(position.iter()) {
             self.check_axis(name, *value);
         }
@@ -97,16 +112,29 @@ impl Engine<'_> {
         }
     }
 
-    pub(super) fn axis_words(position: Vec3) -> Vec<Word> {
+    /// The words of a position, with those of rotary axes.
+    pub(super) fn axis_words(&self, position: Vec3) -> Vec<Word> {
         let words = AXES.into_iter().zip(position.iter());
-        words.map(|(register, value)| Word { register, value: *value, force: false }).collect()
+        let words = words.map(|(register, value)| Word { register, value: *value, force: false });
+        words.chain(self.rotary_words()).collect()
     }
 
     /// A rapid move; the first one after a tool change goes to its place first and then down with the tool's length.
     pub(super) fn rapid_to(&mut self, position: Vec3) {
         self.check_travel(position);
         let machine = self.machine;
-        if let Some(coolant) = self.approach.take() {
+        let coolant = self.approach.take();
+        if coolant.is_some() {
+            self.turn_now();
+        }
+        if let Some(coolant) = coolant.as_ref().filter(|_| self.is_followed()) {
+            // The length of a tool that leans is known to the control once it follows the tool end.
+            self.follow();
+            if !coolant.is_empty() {
+                self.control.code(coolant);
+            }
+        }
+        if let Some(coolant) = coolant.filter(|_| !self.is_followed()) {
             let values = Values::default()
                 .text("work_offset", self.work_offset_code())
                 .number("X", position.x)
@@ -120,7 +148,7 @@ impl Engine<'_> {
             self.work_offset_now();
             for place in self.rapid_corner(position).into_iter().chain([position]) {
                 let off = self.compensation_off(place);
-                self.control.motion(&off, &[&machine.codes.rapid], &Self::axis_words(place));
+                self.control.motion(&off, &[&machine.codes.rapid], &self.axis_words(place));
             }
         }
         self.skipped = false;
@@ -146,7 +174,8 @@ impl Engine<'_> {
     /// Where a rapid turns, if one of its axes moves apart: that axis goes first when it goes up, and last when it goes
     /// down, so that the tool is over the part while it goes aside. None where nobody knows from where the tool comes.
     fn rapid_corner(&self, position: Vec3) -> Option<Vec3> {
-        let apart = self.rapid_axis.or(self.machine.rapid_axis)?.index();
+        // Past the walls of a hole that leans no axis may move apart.
+        let apart = self.rapid_axis.or(self.machine.rapid_axis).filter(|_| self.is_upright())?.index();
         let here = self.position.filter(|_| !self.skipped)?;
         let there = self.rounded(position);
         let aside = (0..AXES.len()).any(|axis| axis != apart && there[axis] != here[axis]);
@@ -276,12 +305,16 @@ impl Engine<'_> {
             let planes = if self.fit_points { possible } else { Vec::new() };
             return (planes, None);
         };
+        let (center, axis) = match &self.turning {
+            Some(turning) => (turning.frame.place(circle.center), turning.frame.rotation * circle.axis),
+            None => (circle.center, circle.axis),
+        };
         let across = |plane: &ArcPlane| {
             let [u, v, _] = arc::plane_axes(*plane);
-            circle.axis[u].hypot(circle.axis[v]) <= PLANE_TOLERANCE * circle.axis.norm()
+            axis[u].hypot(axis[v]) <= PLANE_TOLERANCE * axis.norm()
         };
         let planes: Vec<ArcPlane> = possible.into_iter().filter(across).collect();
-        let center = (!planes.is_empty()).then_some(circle.center);
+        let center = (!planes.is_empty()).then_some(center);
         (planes, center)
     }
 
@@ -334,7 +367,7 @@ impl Engine<'_> {
     }
 
     /// The feed as code and word of a block over a length.
-    fn feed_words(&mut self, length: f64) -> (Option<String>, Option<Word>) {
+    pub(super) fn feed_words(&mut self, length: f64) -> (Option<String>, Option<Word>) {
         let Some(Feed { mode, value, timed }) = self.feed else { return (None, None) };
         let codes = &self.machine.codes;
         let code = match mode {
@@ -357,7 +390,7 @@ impl Engine<'_> {
 
     /// The register of a feed in some mode: one of its own where the machine has that, since the numbers are of another
     /// size.
-    fn feed_register(&self, mode: FeedMode) -> &'static str {
+    pub(super) fn feed_register(&self, mode: FeedMode) -> &'static str {
         let own = match mode {
             FeedMode::PerMinute => FEEDS[0],
             FeedMode::PerRevolution => FEEDS[1],
@@ -378,10 +411,15 @@ impl Engine<'_> {
     /// Work offset, length offset and coolant that an approach by rapid would have brought.
     pub(super) fn approach_now(&mut self) {
         self.work_offset_now();
+        self.turn_now();
         if let Some(coolant) = self.approach.take() {
-            let machine = self.machine;
-            let values = Values::default().number("H", f64::from(self.length_offset));
-            self.control.template(&machine.templates.length_offset, &values);
+            if self.is_followed() {
+                self.follow();
+            } else {
+                let machine = self.machine;
+                let values = Values::default().number("H", f64::from(self.length_offset));
+                self.control.template(&machine.templates.length_offset, &values);
+            }
             if !coolant.is_empty() {
                 self.control.code(&coolant);
             }
@@ -411,7 +449,7 @@ impl Engine<'_> {
             self.compensating = self.compensated;
             self.level_plane();
         }
-        let mut words = Self::axis_words(position);
+        let mut words = self.axis_words(position);
         words.extend(feed);
         self.cut(&before.unwrap_or_default(), feed_code, &[&machine.codes.linear], &words);
         self.skipped = false;
@@ -427,7 +465,13 @@ impl Engine<'_> {
     }
 
     /// A cutting block; a new feed mode makes the control forget its feed rate.
-    fn cut(&mut self, before: &[String], feed_code: Option<String>, codes: &[&str], words: &[Word]) {
+    pub(super) fn cut(
+        &mut self,
+        before: &[String],
+        feed_code: Option<String>,
+        codes: &[&str],
+        words: &[Word],
+    ) {
         let mut before = before.to_vec();
         if let Some(code) = feed_code
             && self.feed_mode(&code)

@@ -95,7 +95,8 @@ impl Engine<'_> {
             },
             "ARCSLP" | "SET" => self.fitting_statement(&arguments),
             "LEADER" => self.leader_statement(&arguments),
-            "ROTABL" | "ROTHED" | "ROTATE" => self.find(PostFindingKind::NoRotaryAxis { word: word.clone() }),
+            "ROTABL" | "ROTHED" | "ROTATE" => self.rotary_statement(&arguments),
+            "LINTOL" | "MAXDPM" | "PIVOTZ" => self.rotary_rule(&arguments),
             "MACHIN" if std::mem::replace(&mut self.machine_named, true) => {
                 self.find(PostFindingKind::Repeated { word: word.clone() });
             }
@@ -175,9 +176,13 @@ impl Engine<'_> {
         });
         let timed = arguments.has("AUTO");
         let off = arguments.has("OFF");
-        let known = ["IPM", "MMPM", "PERMIN", "IPR", "MMPR", "PERREV", "INVERS", "AUTO", "OFF", "MAXIPM"];
+        let known =
+            ["IPM", "MMPM", "PERMIN", "IPR", "MMPR", "PERREV", "INVERS", "AUTO", "OFF", "MAXIPM", "LENGTH"];
         if let Some(kind) = arguments.unknown(&known) {
             return self.find(kind);
+        }
+        if self.feed_point(arguments) {
+            return;
         }
         let (mode, unit) = match &stated {
             Some((word, (mode, unit))) => {
@@ -278,7 +283,14 @@ impl Engine<'_> {
     }
 
     /// Whether a value is within its range; a finding when it is not.
-    fn within(&mut self, word: &SmolStr, argument: &str, value: f64, least: f64, greatest: f64) -> bool {
+    pub(super) fn within(
+        &mut self,
+        word: &SmolStr,
+        argument: &str,
+        value: f64,
+        least: f64,
+        greatest: f64,
+    ) -> bool {
         let within = (least..=greatest).contains(&value);
         if !within {
             let (word, argument) = (word.clone(), argument.into());
@@ -324,7 +336,8 @@ impl Engine<'_> {
         self.end_cycle();
         self.coolant_now();
         let machine = self.machine;
-        self.control.templates(&machine.templates.home, &Values::default());
+        self.follow_no_more(false);
+        self.home_blocks(&machine.templates.home, Values::default());
         self.control.forget(&["X", "Y", "Z"]);
         self.position = None;
     }
@@ -359,9 +372,10 @@ impl Engine<'_> {
             return self.find(PostFindingKind::NoClearance { word: word.clone() });
         };
         self.leave_cycle();
-        self.retracted_from = self.position.map(|here| here.z);
-        match self.position {
-            Some(here) => self.rapid_to(Vec3::new(here.x, here.y, height)),
+        self.retracted_from = self.position.map(|here| self.height(&here));
+        match self.position.map(|here| self.drawn_to(here, height)) {
+            Some(Some(place)) => self.rapid_to(place),
+            Some(None) => self.find(PostFindingKind::ClearanceNotReached { word: word.clone() }),
             None => self.rapid_to_height(height),
         }
     }
@@ -370,7 +384,7 @@ impl Engine<'_> {
         let (Some(height), Some(here)) = (self.retracted_from.take(), self.position) else {
             return self.find(PostFindingKind::NoRetract);
         };
-        let target = Vec3::new(here.x, here.y, height);
+        let target = self.at_height(&here, height);
         if let Some(value) = arguments.number() {
             self.feed = Some(Feed { mode: FeedMode::PerMinute, value: value * self.scale, timed: false });
             self.linear_to(target);

@@ -64,6 +64,11 @@ impl Engine<'_> {
         if self.coolant && self.approach.is_none() {
             self.control.code(&machine.codes.coolant_off);
         }
+        self.follow_no_more(false);
+        let length = arguments.after("LENGTH").map(|length| length * self.scale);
+        if let Some(turning) = &mut self.turning {
+            turning.load(length);
+        }
         let values = Values::default().number("T", f64::from(number)).number("H", f64::from(offset));
         self.control.templates(&machine.templates.tool_change, &values);
         self.tool = Some(number);

@@ -1,6 +1,7 @@
 //! Runs a tape through the stand-alone interpreter of LinuxCNC and reads its canonical calls.
 
 mod follow;
+pub(crate) mod rotary;
 
 use std::{
     path::PathBuf,

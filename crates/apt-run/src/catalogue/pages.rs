@@ -22,6 +22,9 @@ pub struct Page {
     /// The dialect of the samples; free if not said.
     #[serde(default)]
     pub dialect: Option<String>,
+    /// The machine for which samples of the tape are posted; linuxcnc-mill3 if not said.
+    #[serde(default)]
+    pub machine: Option<String>,
     /// The first sample cannot show it by itself (budgets, files); the reason.
     #[serde(default)]
     pub not_shown: Option<String>,

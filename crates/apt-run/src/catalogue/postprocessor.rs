@@ -46,6 +46,26 @@ fn measured(kind: &Kind) -> Option<String> {
                 more => format!("{more} motions are left out, of which this is the first"),
             }
         ),
+        Kind::AxisUnreachable { i, j, k, positions } => format!(
+            "no angles of the rotary axes point the tool along ({}, {}, {}); {}",
+            number(*i),
+            number(*j),
+            number(*k),
+            positions_left_out(*positions)
+        ),
+        Kind::RotaryLimit { axis, angle, least, greatest, positions } => {
+            format!("{}; {}", outside(axis, *angle, *least, *greatest), positions_left_out(*positions))
+        }
+        Kind::RotaryTurnedBack { axis, from, to } => format!(
+            "{axis} is at its end in the cut: the tool goes off the part while it turns from {} back to {}",
+            number(*from),
+            number(*to)
+        ),
+        Kind::RotarySwing { axis, degrees, turned } => format!(
+            "{axis} turns by {} degrees where the tool turns by {}",
+            number(tenths(*degrees)),
+            number(tenths(*turned))
+        ),
         Kind::BadValue { word, argument, value } => {
             format!("{word}: {argument} {} is out of range; the statement is left out", number(*value))
         }
@@ -71,6 +91,18 @@ fn measured(kind: &Kind) -> Option<String> {
     })
 }
 
+/// Degrees as precise as anybody wants to read them.
+fn tenths(degrees: f64) -> f64 {
+    (degrees * 10.0).round() / 10.0
+}
+
+fn positions_left_out(positions: u32) -> String {
+    match positions {
+        1 => "the position is left out".to_owned(),
+        more => format!("{more} positions are left out, of which this is the first"),
+    }
+}
+
 fn code(kind: &Kind) -> &'static str {
     match kind {
         Kind::NoFeed => "APT0820",
@@ -88,6 +120,15 @@ fn code(kind: &Kind) -> &'static str {
         Kind::DigitLimit { .. } => "APT0841",
         Kind::NotFinite => "APT0842",
         Kind::ToolAxis { .. } => "APT0843",
+        Kind::AxisUnreachable { .. } => "APT0844",
+        Kind::RotaryLimit { .. } => "APT0845",
+        Kind::RotaryTurnedBack { .. } => "APT0846",
+        Kind::RotarySwing { .. } => "APT0847",
+        Kind::TooManyParts { .. } => "APT0848",
+        Kind::NoToolLength => "APT0849",
+        Kind::CompensationTurns => "APT0874",
+        Kind::CycleTurns => "APT0884",
+        Kind::ClearanceNotReached { .. } => "APT0899",
         Kind::UnknownWord { .. } => "APT0850",
         Kind::NotSupported { .. } => "APT0851",
         Kind::UnknownArgument { .. } => "APT0852",
@@ -151,7 +192,9 @@ fn hint(kind: &Kind) -> Option<&'static str> {
         }
         Kind::CycleLeftOn { .. } => "give CYCLE/OFF after the last hole",
         Kind::CompensationLeftOn { .. } => "give CUTCOM/OFF before the tool leaves the contour",
-        Kind::ToolAxis { .. } => "this machine has a fixed spindle; choose one with rotary axes",
+        Kind::ToolAxis { .. } => {
+            "this machine has a fixed spindle; choose one with rotary axes, as linuxcnc-mill5"
+        }
         Kind::AxisLimit { .. } => "shift the part by ORIGIN or TRANS, or choose a larger machine",
         Kind::CycleWithoutPosition => "give a GOTO before CYCLE",
         Kind::NoClearance { .. } => "give CLEARP first",
@@ -196,6 +239,23 @@ fn hint(kind: &Kind) -> Option<&'static str> {
         }
         Kind::FunctionOfWord { .. } => "use the word, so that its state is known",
         Kind::TextTooLong { .. } => "shorten it, or divide it into two statements",
+        Kind::AxisUnreachable { .. } => {
+            "choose a machine whose rotary axes reach it, or lay the part otherwise"
+        }
+        Kind::RotaryLimit { .. } => {
+            "give a RAPID off the part before, on which the axis can turn back, or retract_mm in the definition of the machine"
+        }
+        Kind::RotaryTurnedBack { .. } => "look at the place on the part, or divide the cut by a RAPID",
+        Kind::RotarySwing { .. } => {
+            "the tool is nearly along a rotary axis: tilt it, or lay the part otherwise"
+        }
+        Kind::TooManyParts { .. } => {
+            "give a larger tolerance_mm or most_parts in the definition of the machine"
+        }
+        Kind::NoToolLength => "give LENGTH in LOADTL",
+        Kind::CompensationTurns => "give CUTCOM/OFF before the motion on which the tool turns",
+        Kind::CycleTurns => "give a RAPID off the part before the hole",
+        Kind::ClearanceNotReached { .. } => "give the way out by RAPID and GOTO",
         Kind::NoRotaryAxis { .. } => "choose a machine with the axis, or remove the statement",
         _ => return None,
     })

@@ -1,20 +1,21 @@
 //! Machine definitions: what a control and its machine want, as data.
 
+mod bundled;
+mod check;
+mod rotary;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use crate::format::{NumberFormat, Sign, Style};
 
+pub use bundled::{definition_file, machine, machines};
+pub use rotary::{Carried, Coordinates, KinematicRules, Preference, RotaryAxis};
+pub(crate) use rotary::{ROTARY_NAMES, VECTOR_REGISTERS};
+
 /// Version of the definition format that this program reads.
 const SCHEMA: u32 = 1;
-
-/// The definitions that come with the program.
-const BUNDLED: [&str; 3] = [
-    include_str!("../machines/linuxcnc-mill3.toml"),
-    include_str!("../machines/fanuc-mill3.toml"),
-    include_str!("../machines/haas-mill3.toml"),
-];
 
 /// What a user needs to choose a machine.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -57,6 +58,52 @@ pub enum MachineError {
     MissingRegister {
         /// The register.
         register: String,
+    },
+    /// A code that this machine needs is missing.
+    #[error("{code} is missing")]
+    MissingCode {
+        /// The code.
+        code: String,
+    },
+    /// A number that has to be above zero, or a direction without a length.
+    #[error("{place} is not a number that can be used here")]
+    NotPositive {
+        /// Where it stands.
+        place: String,
+    },
+    /// A chain of no axes, or of more than two.
+    #[error("kinematics.chain has {axes} axes, one or two are possible")]
+    ChainLength {
+        /// How many there are.
+        axes: usize,
+    },
+    /// A chain names an axis that is not there, or that is not called A, B or C.
+    #[error("kinematics: there is no rotary axis {axis}, of A, B and C")]
+    UnknownRotaryAxis {
+        /// The name.
+        axis: String,
+    },
+    /// A rotary axis that no chain names.
+    #[error("rotary.{axis} is not in kinematics.chain")]
+    NotInChain {
+        /// Its name.
+        axis: String,
+    },
+    /// Two rotary axes about the same direction.
+    #[error("the rotary axes {first} and {second} are parallel")]
+    ParallelAxes {
+        /// The one next to the part.
+        first: String,
+        /// The other one.
+        second: String,
+    },
+    /// The head is nearer to the part than the table.
+    #[error("kinematics.chain begins at the part: {table} of the table stands before {head} of the head")]
+    TableBehindHead {
+        /// The axis of the table.
+        table: String,
+        /// That of the head.
+        head: String,
     },
     /// Limits in the wrong order.
     #[error("{place}: {least} is not less than {greatest}")]
@@ -101,6 +148,12 @@ pub struct MachineDefinition {
     pub rapid_axis: Option<LinearAxis>,
     /// Axes by name.
     pub axes: BTreeMap<String, Axis>,
+    /// Rotary axes by name: A, B or C.
+    #[serde(default)]
+    pub rotary: BTreeMap<String, RotaryAxis>,
+    /// How they go together; none for a machine whose tool always stands upright.
+    #[serde(default)]
+    pub kinematics: Option<KinematicRules>,
     /// Registers by name. `FR` and `FI` are those of feeds per revolution and of inverse times, where these have other digits than a feed per minute, `F`.
     pub registers: BTreeMap<String, Register>,
     /// Layout of blocks.
@@ -177,6 +230,9 @@ impl LinearAxis {
 pub struct Axis {
     /// Travel in millimetres, seen from the work origin.
     pub limits_mm: [f64; 2],
+    /// How fast it goes at feed rate, where blocks on which rotary axes turn have to keep to that.
+    #[serde(default)]
+    pub most_mm_per_minute: Option<f64>,
 }
 
 /// A word address and the format of its number.
@@ -367,6 +423,11 @@ pub struct Templates {
     pub dwell: String,
     pub message: String,
     pub home: Vec<String>,
+    /// The control is told to follow the tool end, and that it is not to any more.
+    #[serde(default)]
+    pub follow_on: Vec<String>,
+    #[serde(default)]
+    pub follow_off: Vec<String>,
     /// The spindle stopped at the angle `{R}`, in degrees; empty where the control has one angle for it.
     #[serde(default)]
     pub spindle_orient: String,
@@ -409,8 +470,6 @@ pub struct Limits {
     pub tools: Option<[u32; 2]>,
 }
 
-/// Registers that every mill needs.
-const NEEDED: [&str; 10] = ["N", "G", "X", "Y", "Z", "I", "J", "K", "F", "S"];
 /// The register of the radius of an arc, and of the plane to which a cycle goes back.
 pub(crate) const RADIUS: &str = "R";
 
@@ -431,157 +490,5 @@ impl MachineDefinition {
     /// What a user needs to choose it.
     pub fn info(&self) -> MachineInfo {
         MachineInfo { name: self.id.clone(), title: self.title.clone(), control: self.control.clone() }
-    }
-
-    fn validate(&self) -> Result<(), MachineError> {
-        if self.schema != SCHEMA {
-            return Err(MachineError::Schema { found: self.schema });
-        }
-        for register in NEEDED {
-            if !self.registers.contains_key(register) {
-                return Err(MachineError::MissingRegister { register: register.to_owned() });
-            }
-        }
-        if self.arc.center == ArcCenter::Radius && !self.registers.contains_key(RADIUS) {
-            return Err(MachineError::MissingRegister { register: RADIUS.to_owned() });
-        }
-        for register in &self.block.order {
-            self.known("block.order", register)?;
-        }
-        for (place, template) in self.all_templates() {
-            for name in crate::template::register_names(&template) {
-                self.known(&place, &name)?;
-            }
-        }
-        let axes = self.axes.iter().map(|(name, axis)| (format!("axes.{name}.limits_mm"), axis.limits_mm));
-        let tools = self.limits.tools.map(|tools| tools.map(f64::from));
-        // A magazine may hold one tool only: its range is tested as one from below the first.
-        let tools = tools.map(|[first, last]| [first - 1.0, last]);
-        let ranges = [
-            ("limits.feed_mm", self.limits.feed_mm),
-            ("limits.spindle", self.limits.spindle),
-            ("limits.tools", tools),
-        ];
-        let ranges = ranges.into_iter().filter_map(|(place, range)| Some((place.to_owned(), range?)));
-        let radii = ("arc".to_owned(), [self.arc.min_radius_mm, self.arc.max_radius_mm]);
-        for (place, [least, greatest]) in axes.chain(ranges).chain([radii]) {
-            // Written so that a NaN is refused too.
-            if least.partial_cmp(&greatest) != Some(std::cmp::Ordering::Less) {
-                let (least, greatest) = (least.to_string(), greatest.to_string());
-                return Err(MachineError::Limits { place, least, greatest });
-            }
-        }
-        Ok(())
-    }
-
-    fn known(&self, place: &str, register: &str) -> Result<(), MachineError> {
-        let computed = matches!(register, "ZR" | "ZI");
-        if computed || self.registers.contains_key(register) {
-            return Ok(());
-        }
-        Err(MachineError::UnknownRegister { place: place.to_owned(), register: register.to_owned() })
-    }
-
-    fn all_templates(&self) -> Vec<(String, String)> {
-        let t = &self.templates;
-        let mut all: Vec<(String, String)> = Vec::new();
-        let lists = [
-            ("program_start", &t.program_start),
-            ("program_end", &t.program_end),
-            ("trailer", &t.trailer),
-            ("tool_change", &t.tool_change),
-            ("home", &t.home),
-        ];
-        for (name, list) in lists {
-            all.extend(list.iter().map(|text| (format!("templates.{name}"), text.clone())));
-        }
-        let single = [
-            ("tool_select", &t.tool_select),
-            ("length_offset", &t.length_offset),
-            ("first_xy", &t.first_xy),
-            ("first_z", &t.first_z),
-            ("spindle_on", &t.spindle_on),
-            ("dwell", &t.dwell),
-            ("message", &t.message),
-            ("spindle_orient", &t.spindle_orient),
-        ];
-        all.extend(single.map(|(name, text)| (format!("templates.{name}"), text.clone())));
-        for (name, cycle) in &self.cycles {
-            let texts = [&cycle.pre, &cycle.on, &cycle.next].into_iter().flatten().chain(&cycle.each);
-            all.extend(texts.map(|text| (format!("cycles.{name}"), text.clone())));
-        }
-        all
-    }
-}
-
-/// The bundled machines, in a fixed order.
-pub fn machines() -> Vec<MachineInfo> {
-    BUNDLED
-        .iter()
-        .filter_map(|text| MachineDefinition::from_toml(text).ok())
-        .map(|machine| machine.info())
-        .collect()
-}
-
-/// A bundled machine.
-///
-/// # Errors
-/// A name that no bundled machine has.
-pub fn machine(name: &str) -> Result<MachineDefinition, MachineError> {
-    bundled(name).map(|(machine, _)| machine)
-}
-
-/// The definition file of a bundled machine, to begin another one with.
-///
-/// # Errors
-/// A name that no bundled machine has.
-pub fn definition_file(name: &str) -> Result<&'static str, MachineError> {
-    bundled(name).map(|(_, text)| text)
-}
-
-fn bundled(name: &str) -> Result<(MachineDefinition, &'static str), MachineError> {
-    for text in BUNDLED {
-        let machine = MachineDefinition::from_toml(text)?;
-        if machine.id == name || machine.machin.iter().any(|known| known.eq_ignore_ascii_case(name)) {
-            return Ok((machine, text));
-        }
-    }
-    Err(MachineError::UnknownMachine { name: name.to_owned() })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_bundled_definition_is_valid() {
-        for text in BUNDLED {
-            let machine = MachineDefinition::from_toml(text).unwrap();
-            assert_eq!(super::machine(&machine.id).unwrap(), machine);
-        }
-        let names: Vec<String> = machines().into_iter().map(|info| info.name).collect();
-        assert_eq!(names, ["linuxcnc-mill3", "fanuc-mill3", "haas-mill3"]);
-        // The names of MACHIN lead to one machine each.
-        let of_programs: Vec<String> =
-            ["LINCNC", "LinuxCNC", "fanuc", "HAAS"].map(|name| super::machine(name).unwrap().id).into();
-        assert_eq!(of_programs, ["linuxcnc-mill3", "linuxcnc-mill3", "fanuc-mill3", "haas-mill3"]);
-        assert_eq!(super::machine("x"), Err(MachineError::UnknownMachine { name: "x".to_owned() }));
-    }
-
-    #[test]
-    fn mistakes_name_line_and_key() {
-        let text = BUNDLED[0].replace("max_block", "max_blok");
-        let Err(MachineError::Syntax { line: Some(line), message }) = MachineDefinition::from_toml(&text)
-        else {
-            panic!("accepted");
-        };
-        assert!(text.lines().nth(line).unwrap().starts_with("max_blok"), "{line}");
-        assert!(message.contains("max_blok"), "{message}");
-        let text = BUNDLED[0].replace("{!Z}", "{!W}");
-        assert!(
-            matches!(MachineDefinition::from_toml(&text), Err(MachineError::UnknownRegister { register, .. }) if register == "W")
-        );
-        let text = BUNDLED[0].replace("schema = 1", "schema = 7");
-        assert_eq!(MachineDefinition::from_toml(&text), Err(MachineError::Schema { found: 7 }));
     }
 }

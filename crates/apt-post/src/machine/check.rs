@@ -1,0 +1,94 @@
+//! What a definition has to be besides well formed.
+
+use super::{ArcCenter, MachineDefinition, MachineError, RADIUS, SCHEMA};
+
+/// Registers that every mill needs.
+const NEEDED: [&str; 10] = ["N", "G", "X", "Y", "Z", "I", "J", "K", "F", "S"];
+
+impl MachineDefinition {
+    /// Whether everything that is named is there, and ranges are ranges.
+    pub(super) fn validate(&self) -> Result<(), MachineError> {
+        if self.schema != SCHEMA {
+            return Err(MachineError::Schema { found: self.schema });
+        }
+        for register in NEEDED {
+            if !self.registers.contains_key(register) {
+                return Err(MachineError::MissingRegister { register: register.to_owned() });
+            }
+        }
+        if self.arc.center == ArcCenter::Radius && !self.registers.contains_key(RADIUS) {
+            return Err(MachineError::MissingRegister { register: RADIUS.to_owned() });
+        }
+        for register in &self.block.order {
+            self.known("block.order", register)?;
+        }
+        for (place, template) in self.all_templates() {
+            for name in crate::template::register_names(&template) {
+                self.known(&place, &name)?;
+            }
+        }
+        self.validate_rotary()?;
+        let turns = self.rotary.iter().filter_map(|(name, axis)| Some((name, axis.limits_degrees?)));
+        let turns = turns.map(|(name, limits)| (format!("rotary.{name}.limits_degrees"), limits));
+        let axes = self.axes.iter().map(|(name, axis)| (format!("axes.{name}.limits_mm"), axis.limits_mm));
+        let tools = self.limits.tools.map(|tools| tools.map(f64::from));
+        // A magazine may hold one tool only: its range is tested as one from below the first.
+        let tools = tools.map(|[first, last]| [first - 1.0, last]);
+        let ranges = [
+            ("limits.feed_mm", self.limits.feed_mm),
+            ("limits.spindle", self.limits.spindle),
+            ("limits.tools", tools),
+        ];
+        let ranges = ranges.into_iter().filter_map(|(place, range)| Some((place.to_owned(), range?)));
+        let radii = ("arc".to_owned(), [self.arc.min_radius_mm, self.arc.max_radius_mm]);
+        for (place, [least, greatest]) in axes.chain(turns).chain(ranges).chain([radii]) {
+            // Written so that a NaN is refused too.
+            if least.partial_cmp(&greatest) != Some(std::cmp::Ordering::Less) {
+                let (least, greatest) = (least.to_string(), greatest.to_string());
+                return Err(MachineError::Limits { place, least, greatest });
+            }
+        }
+        Ok(())
+    }
+
+    fn known(&self, place: &str, register: &str) -> Result<(), MachineError> {
+        let computed = matches!(register, "ZR" | "ZI");
+        if computed || self.registers.contains_key(register) {
+            return Ok(());
+        }
+        Err(MachineError::UnknownRegister { place: place.to_owned(), register: register.to_owned() })
+    }
+
+    fn all_templates(&self) -> Vec<(String, String)> {
+        let t = &self.templates;
+        let mut all: Vec<(String, String)> = Vec::new();
+        let lists = [
+            ("program_start", &t.program_start),
+            ("program_end", &t.program_end),
+            ("trailer", &t.trailer),
+            ("tool_change", &t.tool_change),
+            ("home", &t.home),
+            ("follow_on", &t.follow_on),
+            ("follow_off", &t.follow_off),
+        ];
+        for (name, list) in lists {
+            all.extend(list.iter().map(|text| (format!("templates.{name}"), text.clone())));
+        }
+        let single = [
+            ("tool_select", &t.tool_select),
+            ("length_offset", &t.length_offset),
+            ("first_xy", &t.first_xy),
+            ("first_z", &t.first_z),
+            ("spindle_on", &t.spindle_on),
+            ("dwell", &t.dwell),
+            ("message", &t.message),
+            ("spindle_orient", &t.spindle_orient),
+        ];
+        all.extend(single.map(|(name, text)| (format!("templates.{name}"), text.clone())));
+        for (name, cycle) in &self.cycles {
+            let texts = [&cycle.pre, &cycle.on, &cycle.next].into_iter().flatten().chain(&cycle.each);
+            all.extend(texts.map(|text| (format!("cycles.{name}"), text.clone())));
+        }
+        all
+    }
+}
