@@ -575,3 +575,55 @@ fn heads_that_a_program_turns() {
     "#]],
     );
 }
+
+/// What leads the machine over to other angles is turned between the way out of the part and the way in.
+#[test]
+fn the_machine_turns_over_off_the_part() {
+    let limits = ("# Without limits_degrees it turns without end.", "limits_degrees = [-200.0, 200.0]");
+    let mill = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], limits]).unwrap();
+    let on_cone = |degrees: i32, height: f64| {
+        let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
+        let (x, y) = (30.0 * cosine, 30.0 * sine);
+        format!("GOTO/{x:.6},{y:.6},{height},{:.9},{:.9},.866025404\n", 0.5 * cosine, 0.5 * sine)
+    };
+    let cut = |from: i32, to: i32| (from..=to).step_by(30).map(|at| on_cone(at, 0.0)).collect::<String>();
+    // The first cut ends near the end of the table, the second one would go beyond it.
+    let (first, second) = (cut(0, 90), cut(90, 270));
+    let out = format!("RAPID\n{}RAPID\n{}RAPID\n{}", on_cone(90, 50.0), on_cone(90, 60.0), on_cone(90, 10.0));
+    let text = format!("{HEAD}RAPID\n{}{first}{out}{second}FINI\n", on_cone(0, 50.0));
+    check(
+        &mill,
+        &text,
+        &expect![[r#"
+        N40 G0 A30. C90.
+        N50 G0 X0. Y24.0192
+        N60 G43 H1 Z51.6025
+        N70 G1 Y-.9808 Z8.3013 F1000.
+        N80 G93 C120. F64.395
+        N90 C150. F64.395
+        N100 C180. F64.395
+        N110 G0 Y24.0192 Z51.6025
+        N120 Y-29.0192 Z60.2628 A-30. C0.
+        N130 Y-4.0192 Z16.9615
+        N140 G94 G1 Y.9808 Z8.3013 F1000.
+        N150 G93 C30. F64.395
+        N160 C60. F64.395
+        N170 C90. F64.395
+        N180 C120. F64.395
+        N190 C150. F64.395
+        N200 C180. F64.395
+        N210 M5
+        N220 G53 G0 Z0.
+        N230 G0 A0. C0.
+        N240 M2
+        %
+    "#]],
+    );
+    // Where it need not turn it does not, whatever side it prefers.
+    let back: String = [270, 240].map(|at| on_cone(at, 0.0)).concat();
+    let up = format!("RAPID\n{}RAPID\n{}", on_cone(270, 50.0), on_cone(270, 10.0));
+    let text = format!("{HEAD}RAPID\n{}{first}{out}{second}{up}{back}FINI\n", on_cone(0, 50.0));
+    let tape = tape_for(&mill, &text).text();
+    let tilted: Vec<&str> = tape.split_whitespace().filter(|word| word.starts_with('A')).collect();
+    assert_eq!(tilted, ["A30.", "A-30.", "A0."], "{tape}");
+}

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use apt_cldata::record::{ClKind, ClPoint, ClRecord, POSITIONS_A_UNIT};
+use apt_cldata::record::{ClKind, ClPoint, ClRecord, ClWord, POSITIONS_A_UNIT};
 use apt_geometry::{Vec3, patience::Patience};
 use smol_str::SmolStr;
 
@@ -20,6 +20,9 @@ use crate::{
 /// Post-processor words behind which the machine stands elsewhere, so that nothing is planned over them.
 const BREAKS: [&str; 11] =
     ["LOADTL", "LOAD", "TOOLNO", "TURRET", "UNLOAD", "GOHOME", "END", "REWIND", "ROTABL", "ROTHED", "ROTATE"];
+
+/// Distance of unit vectors that are one direction with the six decimals that CL data have.
+const SAME_AXIS: f64 = 1e-6;
 
 /// A position, in the unit of the tape.
 #[derive(Debug, Clone, Copy)]
@@ -80,6 +83,8 @@ pub(super) struct Turning<'a> {
     pub(super) axis: Vec3,
     /// How they come to the positions of the stretch that is being made.
     plan: VecDeque<Step>,
+    /// Whether the last motion was a rapid.
+    after_rapid: bool,
     /// Angles by ROTABL and ROTHED, at which the coordinates of the program are those of the machine.
     held: Option<Held>,
     /// Whether the control follows the tool end, and whether it has to on the stretch that begins.
@@ -145,6 +150,7 @@ impl<'a> Turning<'a> {
             axis: kinematics.axis(angles),
             kinematics,
             plan: VecDeque::new(),
+            after_rapid: false,
             held: None,
             follows: false,
             to_follow: false,
@@ -211,6 +217,14 @@ impl<'a> Turning<'a> {
     fn plan(&mut self, axes: &[Vec3], patience: Patience<'_>) {
         let mut here = self.angles;
         let mut rest = axes;
+        // A machine that need not turn does not, whatever it prefers.
+        if axes.first().is_some_and(|axis| (axis - self.axis).norm() <= SAME_AXIS) {
+            let indifferent = self.kinematics.axes.map(|axis| Rotary { prefer: None, ..axis });
+            let indifferent = Kinematics { axes: indifferent, ..self.kinematics };
+            if let Ok(angles) = plan(&indifferent, axes, here, patience) {
+                return self.take(&angles, false);
+            }
+        }
         // Whether the first one is where the tool stands already, to be turned back there.
         let mut back = false;
         while !rest.is_empty() && !patience.ends_after(1) {
@@ -325,7 +339,7 @@ impl Engine<'_> {
         let ahead = self.records.get(self.at + 1..).unwrap_or_default();
         let planned = self.turning.as_ref().map(|turning| {
             let mut axes = vec![target.axis];
-            axes.extend(stretch(ahead, turning, self.patience));
+            axes.extend(stretch(ahead, turning, true, self.patience));
             let planned = plan(&turning.kinematics, &axes, turning.angles, self.patience).ok();
             let first = planned.and_then(|angles| angles.first().copied());
             let alone = || turning.kinematics.nearest(&target.axis, turning.angles);
@@ -339,10 +353,17 @@ impl Engine<'_> {
         self.position = Some(position);
     }
 
-    /// Plans the stretch that begins with the motion record that is being made, unless it is in one already: up to the next motion after a RAPID.
+    /// Plans the stretch that begins with the motion record that is being made, unless it is in one already.
     fn plan_ahead(&mut self) {
-        let Some(turning) = self.turning.as_mut().filter(|turning| turning.plan.is_empty()) else { return };
-        let axes = stretch(self.records.get(self.at..).unwrap_or_default(), turning, self.patience);
+        let (rapid, off) = (self.rapid.is_some(), self.position.is_none());
+        let Some(turning) = self.turning.as_mut() else { return };
+        // A rapid may lead out of the part; only what comes behind one is off it for certain.
+        let is_off = rapid && (std::mem::replace(&mut turning.after_rapid, rapid) || off);
+        if !turning.plan.is_empty() {
+            return;
+        }
+        let ahead = self.records.get(self.at..).unwrap_or_default();
+        let axes = stretch(ahead, turning, is_off, self.patience);
         turning.to_follow = axes.iter().any(leans) || turning.angles != [0.0; 2];
         turning.plan(&axes, self.patience);
     }
@@ -399,26 +420,33 @@ pub(super) fn leans(axis: &Vec3) -> bool {
     axis.z <= 0.0 || axis.z < super::SPINDLE_AXIS_COSINE * axis.norm()
 }
 
-/// The tool axes of the positions from the first record on, up to the next motion after a RAPID or what moves the machine otherwise.
-fn stretch(records: &[ClRecord], turning: &Turning<'_>, patience: Patience<'_>) -> Vec<Vec3> {
+/// The tool axes of the positions from the first record on that are planned together: up to the next motion after a RAPID, or to what moves the
+/// machine otherwise. Where the tool is off the part, the last rapid before a cut belongs to them, so that the machine turns on the one before it.
+fn stretch(records: &[ClRecord], turning: &Turning<'_>, is_off: bool, patience: Patience<'_>) -> Vec<Vec3> {
     let mut axes = Vec::new();
     let mut rapid = false;
+    // How many axes belong to the stretch if the rapid behind them is not the last one before a cut.
+    let mut without_next: Option<usize> = None;
+    let mut motions = 0;
     for record in records {
         if patience.ends_after(1) {
             break;
         }
         match &record.kind {
-            ClKind::Motion { from: false, points, .. } if !rapid => {
+            ClKind::Motion { from: false, points, .. } => {
+                if rapid && (!is_off || motions > 1) {
+                    return axes.into_iter().take(without_next.unwrap_or(usize::MAX)).collect();
+                }
+                without_next = rapid.then_some(axes.len());
                 let finite =
                     points.iter().filter(|point| point.position.iter().all(|value| value.is_finite()));
                 axes.extend(finite.map(|point| turning.in_part(point.position, stated_axis(point)).1));
+                (rapid, motions) = (false, motions + 1);
             }
             ClKind::Motion { .. } | ClKind::End => break,
             ClKind::Postprocessor { word, .. } if BREAKS.contains(&word.as_str()) => break,
             ClKind::Postprocessor { word, arguments, .. } if word == "RAPID" => {
-                rapid = !arguments
-                    .iter()
-                    .any(|item| matches!(item, apt_cldata::record::ClWord::Word(word) if word == "OFF"));
+                rapid = !arguments.iter().any(|item| matches!(item, ClWord::Word(word) if word == "OFF"));
             }
             _ => {}
         }
