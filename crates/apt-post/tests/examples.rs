@@ -435,15 +435,22 @@ fn any_statement() -> impl proptest::strategy::Strategy<Value = String> {
         "GOTO", "FROM", "GODLTA", "RAPID", "FEDRAT", "SPINDL", "COOLNT", "LOADTL", "SELCTL", "UNLOAD",
         "CUTCOM", "CYCLE", "DELAY", "STOP", "END", "REWIND", "GOHOME", "CLEARP", "RETRCT", "PLUNGE",
         "ORIGIN", "TRANS", "SEQNO", "OPSKIP", "AUXFUN", "PREFUN", "MCHTOL", "ARCSLP", "UNITS", "CIRCLE",
-        "MOVARC", "INTOL", "CUTTER", "MULTAX", "FINI", "TOOLNO", "OFSTNO", "FOO",
+        "MOVARC", "INTOL", "CUTTER", "MULTAX", "FINI", "TOOLNO", "OFSTNO", "FOO", "ROTABL", "ROTHED",
+        "ROTATE", "LINTOL", "MAXDPM", "PIVOTZ",
     ]);
     let argument = prop::sample::select(vec![
         "0", "1", "-1", "2.5", "10", "0.25", "1.0E9", "-1.0E300", "1.0E-300", "ON", "OFF", "DRILL", "DEEP",
         "TAP", "BRKCHP", "BORE", "DEPTH", "STEP", "CLEAR", "TPI", "IPM", "MMPR", "INVERS", "AUTO", "CLW",
-        "SFM", "REV", "LEFT", "LINCIR", "INCR", "MM", "INCHES", "XYPLAN", "ANGLE", "RTRCTO",
+        "SFM", "REV", "LEFT", "LINCIR", "INCR", "MM", "INCHES", "XYPLAN", "ANGLE", "RTRCTO", "ATANGL",
+        "AAXIS", "BAXIS", "CAXIS", "ROTREF", "LENGTH", "90",
     ]);
-    (word, prop::collection::vec(argument, 0..8))
-        .prop_map(|(word, arguments)| format!("{word}/{}\n", arguments.join(",")))
+    let statement = (word, prop::collection::vec(argument, 0..8))
+        .prop_map(|(word, arguments)| format!("{word}/{}\n", arguments.join(",")));
+    let number = prop::sample::select(vec!["0", "1", "-1", "5", "-20", "1.0E-300", "0.3"]);
+    // A tool that leans, or whose direction has no length.
+    let leaning = prop::collection::vec(number, 6..7)
+        .prop_map(|numbers| format!("MULTAX/ON\nGOTO/{}\n", numbers.join(",")));
+    prop_oneof![4 => statement, 1 => leaning]
 }
 
 proptest::proptest! {
