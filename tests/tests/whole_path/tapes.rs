@@ -66,16 +66,25 @@ fn followed(analysis: &Analysis) -> (usize, usize) {
 
 #[test]
 fn every_example_runs_to_its_end_along_its_path() {
-    let mut seen = 0;
+    let (mut upright, mut leaning) = (0, 0);
     for path in examples() {
         let analysis = analysis(&read(&path), "free");
+        let report = report(&analysis).unwrap();
+        if path_of(&report).iter().any(|location| location.axis != [0.0, 0.0, 1.0]) {
+            let tape = analysis.tape(FIVE_AXES.0, &|| false, &mut |_, _| {}).unwrap().tape;
+            assert!(tape.is_ok(), "{}: {:?}", title(&path), tape.findings);
+            // Its holes lean, too, so that the control makes them: what it does is looked at with the post-processor.
+            assert!(!joints(&tape.text(), &tools(&report)).is_empty());
+            leaning += 1;
+            continue;
+        }
         let tape = tape(&analysis);
         assert!(tape.is_ok(), "{}: {:?}", title(&path), tape.findings);
         let (straight, arcs) = followed(&analysis);
         assert!(straight + arcs > 0, "{}", title(&path));
-        seen += 1;
+        upright += 1;
     }
-    assert!(seen > 0);
+    assert!(upright > 0 && leaning > 0);
 }
 
 /// The programs of the oracle say nothing about spindle and feed, which the machine wants to know.
@@ -138,7 +147,7 @@ fn tapes_of_tools_that_lean_keep_them_on_their_way() {
                 .collect();
             println!("{}", title(&path));
             let inches = tape.units == Units::Inches;
-            let moves = joints(&tape.text(), &tools(&report).into_iter().collect::<Vec<_>>());
+            let moves = joints(&tape.text(), &tools(&report));
             follow_turning(&moves, &goals, inches, tip, axis);
             (count, blocks) = (count + 1, blocks + moves.len());
         }
