@@ -2,6 +2,8 @@
 //! plane. The path is the line or circle through the present position, so that a starting error inside the band is
 //! kept; stops are intersections in closed form; circles are cut into the fewest chords of the tolerance ring.
 
+mod stops;
+
 use apt_geometry::{
     Vec3,
     motion::{CheckSurface, Relation},
@@ -9,12 +11,13 @@ use apt_geometry::{
     surface::Surface,
 };
 
+use stops::choose;
+
 use super::{Path, Prepared};
 use crate::{
     bound::Bent,
     error::{Course, MotionFailure},
     plane_curve::{Curve, flat},
-    position,
     role::GUARD,
     section2::State,
 };
@@ -232,181 +235,6 @@ fn track(prepared: &Prepared, drive: &Curve, shift: f64) -> Track {
         }
     };
     Track { curve, from, axis }
-}
-
-/// The stop asked for; `None` where the vectors decide which one that is.
-fn choose(
-    prepared: &Prepared,
-    check: &CheckSurface,
-    track: &Track,
-    stop: &Curve,
-) -> Result<Option<Candidate>, MotionFailure> {
-    match check.relation {
-        Relation::To | Relation::Past | Relation::On => crossing(prepared, check, track, stop),
-        Relation::TangentToDrive | Relation::TangentToPart => {
-            tangency(prepared, check, track, stop).map(Some)
-        }
-    }
-}
-
-fn crossing(
-    prepared: &Prepared,
-    check: &CheckSurface,
-    track: &Track,
-    stop: &Curve,
-) -> Result<Option<Candidate>, MotionFailure> {
-    let on = check.relation == Relation::On;
-    let reach = if on { 0.0 } else { prepared.tool.radius() };
-    // A tool without width is TO and PAST a line at the same place.
-    let levels: &[f64] = if on { &[0.0] } else { &[reach, -reach] };
-    let mut all: Vec<Candidate> = Vec::new();
-    for &level in levels {
-        all.extend(track.crossings(stop, level).into_iter().map(|x| Candidate { x, level }));
-    }
-    all.sort_by(|a, b| a.x.total_cmp(&b.x));
-    let value = |x: f64| {
-        let distance = stop.signed_distance(&track.at(x), &track.axis);
-        if on { distance } else { distance.abs() - reach }
-    };
-    let start = value(0.0);
-    if all.is_empty() {
-        let (x, nearest) = track.nearest(stop, &|x| value(x).abs());
-        return Err(MotionFailure::NeverMet {
-            check: 0,
-            relation: check.relation,
-            nearest,
-            at: track.at(x),
-            is_there: prepared.checks[0].is_there(start, prepared.size),
-            is_touched: false,
-            turns_back: None,
-            course: track.never_meets(stop),
-        });
-    }
-    let found = all.len();
-    let is_there = |value: f64| prepared.checks[0].is_there(value, prepared.size);
-    let ahead = turns(track, &all, check.occurrence);
-    let mut remaining = check.occurrence.max(1);
-    let mut leaving = is_there(start);
-    let mut clear = !leaving && start > 0.0;
-    let mut previous: Option<Candidate> = None;
-    let mut touched = None;
-    for candidate in ahead {
-        // Already there at the start: only the next position counts.
-        if leaving && (1..=3).all(|k| is_there(value(candidate.x * f64::from(k) / 4.0))) {
-            previous = Some(candidate);
-            continue;
-        }
-        // Lines and circles are symmetric: between two positions the tool is the farthest in, or out again, half way.
-        let from = previous.replace(candidate);
-        let between = value(0.5 * (from.map_or(0.0, |from| from.x) + candidate.x));
-        if leaving {
-            leaving = false;
-            clear = between > 0.0;
-        }
-        let label = if on {
-            Relation::On
-        } else if clear {
-            Relation::To
-        } else {
-            Relation::Past
-        };
-        clear = !clear;
-        if label != check.relation {
-            continue;
-        }
-        if from.is_some_and(|from| on || from.level * candidate.level > 0.0) {
-            let limit = prepared.checks[0].touch_limit();
-            // Vectors about a circle run elsewhere in the band of the drive surface.
-            let unsure = if track.closed() { prepared.drive.band() } else { 0.0 };
-            if (between.abs() - limit).abs() < unsure {
-                return Ok(None);
-            }
-            if between.abs() <= limit {
-                touched.get_or_insert((between.abs(), candidate.x));
-                continue;
-            }
-        }
-        remaining -= 1;
-        if remaining == 0 {
-            return Ok(Some(candidate));
-        }
-    }
-    Err(match touched {
-        Some((depth, x)) => MotionFailure::NeverMet {
-            check: 0,
-            relation: check.relation,
-            nearest: depth,
-            at: track.at(x),
-            is_there: true,
-            is_touched: true,
-            turns_back: None,
-            course: Course::Analytic,
-        },
-        None => MotionFailure::NoneAhead { check: 0, relation: check.relation, found },
-    })
-}
-
-/// The candidates ahead, repeated over as many turns as the count can need.
-fn turns(track: &Track, all: &[Candidate], occurrence: u32) -> Vec<Candidate> {
-    if !track.closed() {
-        return all.iter().copied().filter(|c| c.x >= 0.0).collect();
-    }
-    let count = occurrence.clamp(1, MAXIMUM_TURNS) + 1;
-    (0..count)
-        .flat_map(|turn| {
-            let offset = f64::from(turn) * std::f64::consts::TAU;
-            all.iter().map(move |c| Candidate { x: c.x + offset, level: c.level })
-        })
-        .collect()
-}
-
-/// Turns about a circle that a count of intersections can ask for.
-const MAXIMUM_TURNS: u32 = 1000;
-
-fn tangency(
-    prepared: &Prepared,
-    check: &CheckSurface,
-    track: &Track,
-    stop: &Curve,
-) -> Result<Candidate, MotionFailure> {
-    let places: Vec<f64> = match (&track.curve, stop) {
-        (TrackCurve::Line { .. }, Curve::Line { .. }) => {
-            return Err(MotionFailure::TangentLines { check: 0 });
-        }
-        (TrackCurve::Line { direction }, Curve::Circle { center, .. }) => {
-            vec![(center - track.from).dot(direction)]
-        }
-        (TrackCurve::Circle { center, .. }, _) => match stop.parallel_directions(center, &track.axis) {
-            Some(towards) => vec![track.angle(&towards, 0.0), track.angle(&towards, std::f64::consts::PI)],
-            None => Vec::new(),
-        },
-    };
-    let working = &prepared.checks[0];
-    let reach = if working.gauge.on { 0.0 } else { prepared.tool.radius() };
-    let mut nearest = f64::INFINITY;
-    let mut tangent: Vec<Candidate> = Vec::new();
-    for x in places {
-        let distance = stop.signed_distance(&track.at(x), &track.axis);
-        let gap = distance.abs() - reach;
-        // What is rounding far away, where the path begins, may be none here, where the next one does.
-        if working.is_there(gap, position::size(&prepared.tool, &track.at(x))) {
-            tangent.push(Candidate { x, level: distance.signum() * reach });
-        } else if gap.abs() < nearest.abs() {
-            nearest = gap;
-        }
-    }
-    if tangent.is_empty() {
-        return Err(MotionFailure::NotTangent { check: 0, gap: nearest });
-    }
-    let found = tangent.len();
-    tangent.sort_by(|a, b| a.x.total_cmp(&b.x));
-    let start = if track.closed() { START_ANGLE } else { START_ANGLE * prepared.size };
-    let wanted = check.occurrence.max(1) as usize - 1;
-    turns(track, &tangent, check.occurrence)
-        .into_iter()
-        .filter(|c| c.x > start)
-        .nth(wanted)
-        .ok_or(MotionFailure::NoneAhead { check: 0, relation: check.relation, found })
 }
 
 /// Side of the check surface on which the tool stands at the end; for ON the side it came from.
