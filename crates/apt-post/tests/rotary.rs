@@ -627,3 +627,43 @@ fn the_machine_turns_over_off_the_part() {
     let tilted: Vec<&str> = tape.split_whitespace().filter(|word| word.starts_with('A')).collect();
     assert_eq!(tilted, ["A30.", "A-30.", "A0."], "{tape}");
 }
+
+/// A control that turns a table the shorter way is told its angle from 0 to 360, and no block turns it by nearly half a turn.
+#[test]
+fn an_axis_that_wraps_is_told_from_nought_to_a_turn() {
+    let endless = "# Without limits_degrees it turns without end.";
+    let mill = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], (endless, "wraps = true")]).unwrap();
+    let tape = tape_for(&mill, &round(2.0));
+    assert!(tape.is_ok(), "{:?}", tape.findings);
+    let angles: Vec<f64> =
+        tape.text().split_whitespace().filter_map(|word| word.strip_prefix('C')?.parse().ok()).collect();
+    assert!(angles.len() > 24 && angles.iter().all(|angle| (0.0..360.0).contains(angle)), "{angles:?}");
+    let turned = |pair: &[f64]| (pair[1] - pair[0]).rem_euclid(360.0);
+    assert!(angles[..25].windows(2).all(|pair| (turned(pair) - 30.0).abs() < 1e-9), "{angles:?}");
+    // Along the table the tool turns in place: by nearly half a turn in two blocks.
+    let text = format!(
+        "{HEAD}RAPID\nGOTO/0,0,50,.5,0,.8660254\nGOTO/0,0,50,0,0,1\nGOTO/0,0,50,-.5,-.01,.8660254\nRAPID\nGOTO/0,0,60,0,0,1\nFINI\n"
+    );
+    let limited = [WIDE[0], WIDE[1], (endless, "wraps = true"), ("[-120.0, 120.0]", "[0.0, 120.0]")];
+    check(
+        &changed("linuxcnc-mill5", &limited).unwrap(),
+        &text,
+        &expect![[r#"
+        N40 G0 A30. C90.
+        N50 G0 X0. Y50.
+        N60 G43 H1 Z36.6025
+        N70 G93 G1 Y0. Z50. A0. F120.
+        N80 C.5729 F60.3844
+        N90 C271.1458 F60.3844
+        N100 Y50.0076 Z36.5982 A30.005 F119.98
+        N110 G0 Y0. Z60. A0.
+        N120 M5
+        N130 G53 G0 Z0.
+        N140 G0 C0.
+        N150 M2
+        %
+    "#]],
+    );
+    let both = changed("linuxcnc-mill5", &[(endless, "wraps = true\nlimits_degrees = [-10.0, 10.0]")]);
+    assert_eq!(both, Err(MachineError::WrapsWithinLimits { axis: "C".into() }));
+}

@@ -21,7 +21,13 @@ use crate::{
 /// How many times as far as the tool a rotary axis turns where the tool is said to hardly turn: it leans by less than about twelve degrees then.
 const SWINGS: f64 = 5.0;
 
+/// Degrees.
+const FULL_TURN: f64 = 360.0;
+/// How far an axis that the control turns the shorter way is turned in one block: so much less than half a turn that rounding does not matter.
+const SHORTER_WAY: f64 = 175.0;
+
 /// The end of a block on which axes turn.
+#[derive(Clone, Copy)]
 struct Turn {
     stand: Stand,
     /// How far the place goes in the part for which the feed counts.
@@ -125,12 +131,33 @@ impl Engine<'_> {
         }
     }
 
-    /// One block on which axes turn.
+    /// One block on which axes turn; several where an axis that the control turns the shorter way turns by half a turn or more, or nearly so.
     fn turning_block(&mut self, turn: &Turn) {
         let Some(before) = self.turning.as_ref().map(|turning| turning.angles) else { return };
         let angles = self.rounded_angles(turn.stand.angles);
-        self.stand(turn.stand.axis, angles);
-        let position = self.on_tape(&turn.stand.tip);
+        let axis = turn.stand.axis;
+        self.stand(axis, angles);
+        let end = self.on_tape(&turn.stand.tip);
+        let start = self.position.unwrap_or(end);
+        let pieces = self.turning.as_ref().map_or(1, |turning| turning.pieces(before));
+        let piece = Turn {
+            length: turn.length / f64::from(pieces),
+            parts: turn.parts.saturating_mul(pieces as usize),
+            ..*turn
+        };
+        let mut last = before;
+        for number in 1..=pieces {
+            let share = f64::from(number) / f64::from(pieces);
+            let between = [0, 1].map(|index| before[index] + (angles[index] - before[index]) * share);
+            let to = if number == pieces { angles } else { self.rounded_angles(between) };
+            self.stand(axis, to);
+            self.joint_block(&piece, last, self.rounded(start.lerp(&end, share)));
+            last = to;
+        }
+    }
+
+    /// A block to slides and to the angles at which the machine has come to stand.
+    fn joint_block(&mut self, turn: &Turn, before: Angles, position: Vec3) {
         let words = self.axis_words(position);
         if !words.iter().any(|word| self.control.changes(word.register, word.value)) {
             // Less than the last decimals.
@@ -241,15 +268,23 @@ impl Engine<'_> {
             return Vec::new();
         }
         if turning.rules.coordinates != Coordinates::Vector {
-            let words = turning.names.iter().zip(turning.angles);
-            return words
-                .filter_map(|(name, value)| Some(Word { register: (*name)?, value, force: false }))
-                .collect();
+            let word = |index: usize| {
+                let (register, angle) = (turning.names[index]?, turning.angles[index]);
+                let value = if turning.wraps[index] { self.wrapped(register, angle) } else { angle };
+                Some(Word { register, value, force: false })
+            };
+            return (0..2).filter_map(word).collect();
         }
         let direction = VECTOR_REGISTERS.into_iter().zip(turning.axis.iter().copied());
         let changed = direction.clone().any(|(register, value)| self.control.changes(register, value));
         // A direction is told whole.
         direction.filter(|_| changed).map(|(register, value)| Word { register, value, force: true }).collect()
+    }
+
+    /// An angle as it is told from 0 to 360.
+    fn wrapped(&self, register: &str, angle: f64) -> f64 {
+        let wrapped = self.control.rounded(register, angle.rem_euclid(FULL_TURN));
+        if wrapped < FULL_TURN { wrapped } else { 0.0 }
     }
 
     /// Brings the rotary axes to where they stand, where no block has told the control of that.
@@ -368,6 +403,15 @@ fn with_height(place: Vec3, height: f64) -> Vec3 {
 }
 
 impl Turning<'_> {
+    /// Into how many blocks the way from some angles is divided, so that the control turns each axis the way that is meant.
+    fn pieces(&self, from: Angles) -> u32 {
+        let pieces = (0..2).filter(|index| self.wraps[*index]).map(|index| {
+            let turned = (self.angles[index] - from[index]).abs();
+            (turned / SHORTER_WAY).ceil() as u32
+        });
+        pieces.max().unwrap_or(1).max(1)
+    }
+
     /// How far and by which axis the machine turns most on the way to other angles.
     fn farthest(&self, to: Angles) -> (f64, usize) {
         let turned = [0, 1].map(|index| (to[index] - self.angles[index]).abs());

@@ -66,6 +66,8 @@ pub(super) struct Turning<'a> {
     pub(super) kinematics: Kinematics,
     /// Registers of the axes of the chain; a machine with one axis has no second.
     pub(super) names: [Option<&'static str>; 2],
+    /// Which of them are told from 0 to 360.
+    pub(super) wraps: [bool; 2],
     /// Degrees per minute.
     pub(super) most: [f64; 2],
     /// A millimetre on the tape.
@@ -109,11 +111,11 @@ impl<'a> Turning<'a> {
     pub(super) fn of(machine: &'a MachineDefinition, unit: f64) -> Option<Self> {
         let rules = machine.kinematics.as_ref()?;
         let mut axes = Vec::new();
-        let (mut names, mut most) = ([None; 2], [f64::INFINITY; 2]);
+        let (mut names, mut wraps, mut most) = ([None; 2], [false; 2], [f64::INFINITY; 2]);
         for (index, name) in rules.chain.iter().enumerate().take(2) {
             let axis = machine.rotary.get(name)?;
             names[index] = ROTARY_NAMES.into_iter().find(|known| known == name);
-            most[index] = axis.most_degrees_per_minute;
+            (wraps[index], most[index]) = (axis.wraps, axis.most_degrees_per_minute);
             axes.push(Rotary {
                 vector: axis.direction()?,
                 carried: match axis.carried {
@@ -140,6 +142,7 @@ impl<'a> Turning<'a> {
         Some(Turning {
             rules,
             names,
+            wraps,
             most,
             unit,
             tolerance: rules.tolerance_mm * unit,

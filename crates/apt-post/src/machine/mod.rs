@@ -97,6 +97,12 @@ pub enum MachineError {
         /// The other one.
         second: String,
     },
+    /// An axis that has limits and is told from 0 to 360.
+    #[error("rotary.{axis} has limits, and wraps: only an axis without end does")]
+    WrapsWithinLimits {
+        /// The axis.
+        axis: String,
+    },
     /// The head is nearer to the part than the table.
     #[error("kinematics.chain begins at the part: {table} of the table stands before {head} of the head")]
     TableBehindHead {

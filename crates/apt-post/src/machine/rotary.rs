@@ -38,6 +38,9 @@ pub struct RotaryAxis {
     /// A place of the axis seen from the work origin, millimetres. Axes of a head go through one place, from which `pivot_mm` counts.
     #[serde(default)]
     pub center_mm: [f64; 3],
+    /// Whether the tape tells its angle from 0 to 360, to which the control turns it the shorter way; for an axis that turns without end.
+    #[serde(default)]
+    pub wraps: bool,
     /// How fast it turns at feed rate.
     pub most_degrees_per_minute: f64,
 }
@@ -148,6 +151,9 @@ impl MachineDefinition {
         let axes: Vec<(&String, &RotaryAxis)> =
             rules.chain.iter().filter_map(|name| Some((name, self.rotary.get(name)?))).collect();
         for (name, axis) in &axes {
+            if axis.wraps && axis.limits_degrees.is_some() {
+                return Err(MachineError::WrapsWithinLimits { axis: (*name).clone() });
+            }
             let place = |what: &str| format!("rotary.{name}.{what}");
             if axis.direction().is_none() {
                 return Err(MachineError::NotPositive { place: place("vector") });
