@@ -45,6 +45,9 @@ const WIDE: [(&str, &str); 2] = [
     ("axis_tolerance_degrees = 0.1", "axis_tolerance_degrees = 90.0"),
 ];
 
+/// Rapids as they are told where no tolerance divides them.
+const UNDIVIDED: (&str, &str) = ("rapid_tolerance_mm = 1.0", "");
+
 const HEAD: &str = "UNITS/MM\nMULTAX\nLOADTL/1,LENGTH,0\nSPINDL/1000,CLW\nFEDRAT/1000\n";
 
 const LEANING: &str = "RAPID\nGOTO/40,20,60,0,0,1\nGOTO/40,20,10,0,-.5,.8660254\nGOTO/60,20,10,.5,0,.8660254\n\
@@ -331,7 +334,7 @@ fn an_axis_that_comes_to_its_end_in_the_cut_is_turned_back_off_the_part() {
     let limits = ("# Without limits_degrees it turns without end.", "limits_degrees = [-200.0, 200.0]");
     let endless = changed("linuxcnc-mill5", &WIDE).unwrap();
     assert_eq!(found(&endless, &round(2.0)), []);
-    let limited = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], limits]).unwrap();
+    let limited = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], UNDIVIDED, limits]).unwrap();
     let kinds = found(&limited, &round(2.0));
     let [PostFindingKind::RotaryLimit { axis, least, greatest, positions, .. }] = &kinds[..] else {
         panic!("{kinds:?}")
@@ -340,7 +343,7 @@ fn an_axis_that_comes_to_its_end_in_the_cut_is_turned_back_off_the_part() {
     assert!(*positions > 10, "{positions}");
     assert_eq!(kinds[0].severity(), Severity::Error);
     let retract = ("warn_degrees = 10.0", "warn_degrees = 10.0\nretract_mm = 25.0");
-    let retracting = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], limits, retract]).unwrap();
+    let retracting = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], UNDIVIDED, limits, retract]).unwrap();
     let kinds = found(&retracting, &round(2.0));
     assert!(
         !kinds.is_empty()
@@ -580,7 +583,7 @@ fn heads_that_a_program_turns() {
 #[test]
 fn the_machine_turns_over_off_the_part() {
     let limits = ("# Without limits_degrees it turns without end.", "limits_degrees = [-200.0, 200.0]");
-    let mill = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], limits]).unwrap();
+    let mill = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], UNDIVIDED, limits]).unwrap();
     let on_cone = |degrees: i32, height: f64| {
         let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
         let (x, y) = (30.0 * cosine, 30.0 * sine);
@@ -632,7 +635,7 @@ fn the_machine_turns_over_off_the_part() {
 #[test]
 fn an_axis_that_wraps_is_told_from_nought_to_a_turn() {
     let endless = "# Without limits_degrees it turns without end.";
-    let mill = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], (endless, "wraps = true")]).unwrap();
+    let mill = changed("linuxcnc-mill5", &[WIDE[0], WIDE[1], UNDIVIDED, (endless, "wraps = true")]).unwrap();
     let tape = tape_for(&mill, &round(2.0));
     assert!(tape.is_ok(), "{:?}", tape.findings);
     let angles: Vec<f64> =
@@ -644,7 +647,8 @@ fn an_axis_that_wraps_is_told_from_nought_to_a_turn() {
     let text = format!(
         "{HEAD}RAPID\nGOTO/0,0,50,.5,0,.8660254\nGOTO/0,0,50,0,0,1\nGOTO/0,0,50,-.5,-.01,.8660254\nRAPID\nGOTO/0,0,60,0,0,1\nFINI\n"
     );
-    let limited = [WIDE[0], WIDE[1], (endless, "wraps = true"), ("[-120.0, 120.0]", "[0.0, 120.0]")];
+    let limited =
+        [WIDE[0], WIDE[1], UNDIVIDED, (endless, "wraps = true"), ("[-120.0, 120.0]", "[0.0, 120.0]")];
     check(
         &changed("linuxcnc-mill5", &limited).unwrap(),
         &text,
@@ -666,4 +670,20 @@ fn an_axis_that_wraps_is_told_from_nought_to_a_turn() {
     );
     let both = changed("linuxcnc-mill5", &[(endless, "wraps = true\nlimits_degrees = [-10.0, 10.0]")]);
     assert_eq!(both, Err(MachineError::WrapsWithinLimits { axis: "C".into() }));
+}
+
+/// On a rapid the tool end stays near its way, too, where the machine says so.
+#[test]
+fn rapids_are_divided_where_the_machine_wants_it() {
+    let text =
+        format!("{HEAD}RAPID\nGOTO/40,20,60,0,-.5,.8660254\nRAPID\nGOTO/60,20,60,.5,0,.8660254\nFINI\n");
+    let blocks = |changes: &[(&str, &str)]| {
+        let tape = tape_for(&changed("linuxcnc-mill5", changes).unwrap(), &text);
+        assert!(tape.is_ok(), "{:?}", tape.findings);
+        tape.blocks.len()
+    };
+    let undivided = blocks(&[UNDIVIDED]);
+    let divided = blocks(&[]);
+    let finely = blocks(&[("rapid_tolerance_mm = 1.0", "rapid_tolerance_mm = 0.1")]);
+    assert!(undivided < divided && divided < finely, "{undivided} {divided} {finely}");
 }

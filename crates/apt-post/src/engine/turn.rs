@@ -222,12 +222,43 @@ impl Engine<'_> {
         self.cut_turning(target, to);
     }
 
-    /// A rapid on which the axes turn.
+    /// A rapid on which the axes turn, divided where the machine wants the tool end on its way there, too, and it is on one.
     fn turn_rapidly(&mut self, place: Vec3, axis: Vec3, angles: Angles) {
         self.follow();
+        let Some(stands) = self.rapid_stands(place, angles) else { return };
+        for stand in stands {
+            if self.patience.ends_after(1) {
+                return;
+            }
+            let angles = self.rounded_angles(stand.angles);
+            let between = self.turning.as_ref().map_or(axis, |turning| turning.kinematics.axis(angles));
+            self.stand(between, angles);
+            self.rapid_to(self.on_tape(&stand.tip));
+        }
         self.stand(axis, angles);
         if let Some(turning) = &self.turning {
             self.rapid_to(turning.frame.place(place));
+        }
+    }
+
+    /// Where a rapid is divided, without its end: its angles turn evenly, to whatever side of the machine they lead. None, with a finding, where it would
+    /// be at too many places.
+    fn rapid_stands(&mut self, place: Vec3, angles: Angles) -> Option<Vec<Stand>> {
+        let known = self.position.filter(|_| !self.skipped && self.approach.is_none());
+        let Some((turning, position)) = self.turning.as_ref().zip(known) else { return Some(Vec::new()) };
+        let Some(tolerances) = turning.rapid_tolerances() else { return Some(Vec::new()) };
+        let from = Stand { tip: turning.frame.part(position), axis: turning.axis, angles: turning.angles };
+        // Between ends with one axis the angles themselves are divided.
+        let to = Stand { tip: place, axis: from.axis, angles };
+        match divide(&turning.kinematics, &from, &to, &tolerances, self.patience) {
+            Ok(mut stands) => {
+                stands.pop();
+                Some(stands)
+            }
+            Err(_) => {
+                self.find(PostFindingKind::TooManyParts { most: tolerances.most });
+                None
+            }
         }
     }
 

@@ -175,6 +175,12 @@ impl<'a> Turning<'a> {
         }
     }
 
+    /// What a rapid has to keep, where it is divided: the tool end its way, and the tool what it likes.
+    pub(super) fn rapid_tolerances(&self) -> Option<Tolerances> {
+        let tip = self.rules.rapid_tolerance_mm.filter(|_| self.kinematics.slides)? * self.unit;
+        Some(Tolerances { tip, axis: std::f64::consts::PI, most: self.rules.most_parts })
+    }
+
     /// A place and a direction of the program as the part has them.
     fn in_part(&self, place: Vec3, axis: Option<Vec3>) -> (Vec3, Vec3) {
         let Some(held) = self.held else { return (place, axis.unwrap_or_else(Vec3::z)) };

@@ -93,6 +93,9 @@ pub struct KinematicRules {
     pub prefer: BTreeMap<String, Preference>,
     /// How far the tool end may leave its straight way between two blocks on which axes turn, millimetres.
     pub tolerance_mm: f64,
+    /// The same of rapids, which are not divided without it. Both count where the tape tells slides.
+    #[serde(default)]
+    pub rapid_tolerance_mm: Option<f64>,
     /// How far the tool may lean out of the plane in which it turns, degrees.
     pub axis_tolerance_degrees: f64,
     /// Most blocks into which a move is divided.
@@ -171,6 +174,7 @@ impl MachineDefinition {
             ("most_parts", rules.most_parts as f64),
             ("dead_cone_degrees", rules.dead_cone_degrees),
             ("warn_degrees", rules.warn_degrees),
+            ("rapid_tolerance_mm", rules.rapid_tolerance_mm.unwrap_or(1.0)),
             ("retract_mm", rules.retract_mm.unwrap_or(1.0)),
             // A head may turn about the tool end itself.
             ("pivot_mm", rules.pivot_mm + 1.0),

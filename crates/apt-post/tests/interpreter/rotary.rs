@@ -10,6 +10,9 @@ pub(crate) const ROUNDED: f64 = 4e-4;
 const ROUNDED_INCHES: f64 = 2e-4;
 const MILLIMETERS_PER_INCH: f64 = 25.4;
 
+/// How far the tool end may leave its way on a rapid, millimetres.
+const RAPID: f64 = 1.0;
+
 /// A move of the joints: X, Y, Z, and A, C in degrees.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Move {
@@ -81,7 +84,8 @@ pub(crate) fn on_part([x, y, z, a, c]: [f64; 5], unit: f64) -> (Vec3, Vec3) {
 }
 
 /// Follows the joints along the path: every position is come to, and between two cuts the tool end stays within `tip` millimetres of its straight
-/// way and the tool within `axis` degrees of its great circle. Arcs end at positions, which those between are on.
+/// way and the tool within `axis` degrees of its great circle; on rapids behind the first position the tool end within `RAPID`. Arcs end at positions,
+/// which those between are on.
 pub(crate) fn follow_turning(moves: &[Move], path: &[Goal], inches: bool, tip: f64, axis: f64) {
     let (unit, rounded) =
         if inches { (MILLIMETERS_PER_INCH.recip(), ROUNDED_INCHES) } else { (1.0, ROUNDED) };
@@ -95,10 +99,11 @@ pub(crate) fn follow_turning(moves: &[Move], path: &[Goal], inches: bool, tip: f
         if step.arc {
             let ahead = path[at..].iter().position(|goal| is_at(step.to, goal));
             at += ahead.unwrap_or_else(|| panic!("{step:?} ends at no position")) + 1;
-        } else if let (Some(goal), false) = (path.get(at), step.rapid) {
-            assert!(!goal.rapid, "{step:?} cuts on the way to {goal:?}");
+        } else if let Some(goal) = path.get(at) {
+            let (tip, axis) = if step.rapid { (RAPID, 90.0) } else { (tip, axis) };
             // From where FROM says the tool stands nobody knows how it comes.
             if let Some(start) = at.checked_sub(1).map(|before| &path[before]) {
+                assert_eq!(goal.rapid, step.rapid, "{step:?} on the way to {goal:?}");
                 for share in [0.25, 0.5, 0.75, 1.0] {
                     let joints =
                         std::array::from_fn(|index| here[index] + (step.to[index] - here[index]) * share);
