@@ -493,3 +493,29 @@ fn a_tool_along_both_walls_of_a_neck_goes_back_along_the_other_one() {
     let work = WORK.get() - before;
     assert!(work <= WORK_IN_NECK, "{work}");
 }
+
+/// A ball ON a cone, normal to that, comes with its flank into a neck of what its drive surface leaves it on the cone: narrower than its bands by little, so that a
+/// vector leads through to the far wall, along which the path leads back into the neck. There is one contact, which goes along the flank steadily.
+#[test]
+fn a_tool_that_turns_does_not_go_through_a_neck_to_its_far_wall() {
+    let part = Geometry::Cone(Cone {
+        vertex: v(1.95487, -4.54162, 3.98643),
+        axis: v(-0.41314, 0.90684, 0.08339).normalize(),
+        cosine: 0.63082,
+    });
+    let drive = quadric([
+        0.349002, 0.351932, 0.033942, 2.391555, 0.036336, -0.013821, 0.313057, 0.69705, 0.248178, -0.285997,
+    ]);
+    let mut p = Program::new();
+    p.cutter(&[0.52207, 0.261035]).tolerance(0.001, 0.001);
+    p.run(&MotionCommand::Thickness(PerRole::all(0.04983)));
+    let axis = Some(v(-0.44417, 0.5914, 0.67302));
+    p.run(&MotionCommand::From { position: v(1.8674, -0.9933, 1.2921), axis, name: String::new() });
+    p.part_side(PartSide::On).run(&MotionCommand::ToolAxis(ToolAxis::Normal { part: true }));
+    let first = plane(0.46866, -0.48685, 0.73711, 3.09969);
+    p.go(&[(Relation::To, &drive), (Relation::On, &part), (Relation::To, &first)]);
+    p.side(DriveSide::Left).indirv(0.46866, -0.48685, 0.73711);
+    p.drive(Turn::Forward, &drive, Relation::On, &level(9.0));
+    assert!((p.tip() - v(1.3, -1.0, 9.0)).norm() < 0.1, "{:?}", p.tip());
+    is_proven(&p);
+}

@@ -183,3 +183,46 @@ fn a_path_that_begins_in_a_tight_bend_goes_on_along_its_other_leg() {
         }
     }
 }
+
+/// OUTTOL of motions to the vertex of a double cone, at which a line has room within the bands.
+const ROOM: [f64; 3] = [0.0001, 0.0002, 0.0005];
+
+/// A line comes along one half to the vertex of a double cone. A vector may lead through between both halves, along the one that it came along, but not to where it
+/// touches the other one on the side on which the path would lead back between them.
+#[test]
+fn a_line_does_not_go_over_to_the_far_side_of_a_vertex() {
+    let circle = Geometry::Circle(Cylinder {
+        point: v(-5.473810895079573, -0.12561754112751777, 0.5290975733407559),
+        axis: Vec3::z(),
+        radius: 6.489609615074528,
+    });
+    let halves = quadric([
+        0.06360716809982382,
+        0.017941084687075913,
+        0.020792750223062303,
+        -0.010928173286468001,
+        -0.08529634436706643,
+        -0.08164547725747308,
+        -0.06465403128843632,
+        0.1614927534237177,
+        -0.017955342750191658,
+        0.19174821276626303,
+    ]);
+    let forward = v(-0.14706244549036745, 0.9784004692704921, -0.14527614689849694);
+    let first = plane(-forward.x, -forward.y, -forward.z, -0.6052224984061589);
+    let upward = v(0.41989206735702095, 0.2197186539859122, 0.8805761550605752);
+    let stop =
+        cylinder(v(0.5711347998316549, 4.495742217125812, -0.1453345033895691), upward, 1.6451672376657884);
+    for outside in ROOM {
+        let mut p = Program::new();
+        p.cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.1523111156921084]).tolerance(0.0005, outside);
+        let axis = Some(v(-0.9984264591964864, -0.04249667681125511, -0.03658740270047517));
+        let position = v(0.9286343751681008, 0.7099925738457538, 1.3186912154636108);
+        p.run(&MotionCommand::From { position, axis, name: String::new() }).part_side(PartSide::Offset);
+        p.go(&[(Relation::To, &halves), (Relation::To, &circle), (Relation::Past, &first)]);
+        p.side(DriveSide::Right).indirv(forward.x, forward.y, forward.z);
+        p.drive(Turn::Forward, &halves, Relation::On, &stop);
+        let evidence = crate::verify::verify(p.last(), &|| false).expect("evidence");
+        assert!(evidence.verified, "{outside}: {evidence:?}");
+    }
+}

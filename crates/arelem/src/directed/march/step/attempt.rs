@@ -169,6 +169,7 @@ impl Stepper<'_> {
             || self.turns_back((&chord, &vertex), least.arriving)
             || self.kinks_back(here, &chord)
             || self.changes_hand(&chord, &vertex)
+            || self.goes_through_neck(here, &chord, &vertex)
             || reached <= self.least_vector(&vertex.tip)
             || vertex.tangent.dot(&here.tangent) < least.between
         {

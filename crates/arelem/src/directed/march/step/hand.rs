@@ -277,6 +277,17 @@ impl Stepper<'_> {
         along.is_some_and(|along| along.dot(chord) <= 0.0)
     }
 
+    /// True if a vector leads through a neck to the far side of it, where the tool touches the wall that is not the one that it came along: along that the path
+    /// leads back on its hand, as beyond a corner, but in a corner the tool comes to the second wall, b·(s·p×a) < 0, and here it goes away from it.
+    pub(super) fn goes_through_neck(&self, here: &Vertex, chord: &Vec3, to: &Vertex) -> bool {
+        let leads_back =
+            self.hand.or_at(here).along(&to.part, &to.drive).is_some_and(|along| along.dot(chord) < 0.0);
+        leads_back
+            && (0..2).any(|role| {
+                !touches_as_before(self.prepared, [here, to], role) && gradients(to)[role].dot(chord) > 0.0
+            })
+    }
+
     /// Directions on the same hand that are against that of the path, or so nearly square to it that no vector along them plainly leads onward:
     /// along what is measured here, if the vector that led here ended beyond the corner, and along each second contact with one of both surfaces, unless
     /// the tool is on that, to neither side of it: what it comes next to may as well be the other way of a crossing. A gradient that the law of the axis turns
