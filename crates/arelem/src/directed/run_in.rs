@@ -70,11 +70,11 @@ pub(super) fn follow<'a>(
 }
 
 /// Whether a tool that has turned to its law, at a distance from where the motion begins, goes on with part and drive surface on other hands than it has them
-/// on where it sets out: it then goes along them against the direction asked for, and has the drive surface on the other side than it is told.
+/// on where it sets out: it then goes along them against the direction asked for, and has the drive surface on the other side than it is told. Nor does a motion
+/// end so that is stopped within that distance, on a way back.
 fn changes_hands(running: &Prepared, points: &[Vec3], length: f64) -> Result<bool, MotionFailure> {
-    let Some(turned) = points.iter().position(|point| (point - running.tip).norm() >= length) else {
-        return Ok(false);
-    };
+    let turned = points.iter().position(|point| (point - running.tip).norm() >= length);
+    let Some(turned) = turned.or(points.len().checked_sub(1)) else { return Ok(false) };
     let place = points[turned];
     let before = turned.checked_sub(1).map_or(running.tip, |k| points[k]);
     let onward = points.get(turned + 1).map_or(place - before, |next| next - place);

@@ -95,3 +95,46 @@ fn a_ring_that_does_not_come_by_its_beginning_is_known() {
     assert!(matches!(failure, MotionFailure::NoAdmissibleVector { .. }), "{failure:?}");
     assert!(judged < 20_000, "{judged} vectors judged");
 }
+
+/// A taper ON a cone that leads otherwise where the motion begins than it is to: on ways as short as it takes to turn it goes round and back along its wall, to the check
+/// surface on the wrong side of where it began. Over a longer way it comes to that as it is told.
+#[test]
+fn a_motion_does_not_end_on_the_way_back_of_a_ring() {
+    let part = Geometry::Cone(Cone {
+        vertex: v(3.8110975551403605, 2.5359790738576153, -1.1167751881603079),
+        axis: v(-0.6928859530496179, -0.6163268213390302, 0.3742329560108917),
+        cosine: 0.9242573692576926,
+    });
+    let upward = v(0.49634131858422786, 0.44704167837956243, 0.7441767486677168);
+    let drive =
+        cylinder(v(-4.433592693078462, 5.144409508893719, 1.295031181864735), upward, 6.283278920094478);
+    let forward = v(-0.8282937627671392, -0.5595524968093206, -0.028817457825240013);
+    let first = plane(-forward.x, -forward.y, -forward.z, -0.4455099071759528);
+    let stop = circle(1.424367338396239, 0.24094898435339607, 1.9910125763839273);
+    let mut p = Program::new();
+    p.cutter(&[
+        0.4404963520216581,
+        0.0,
+        0.22024817601082905,
+        0.0,
+        0.0,
+        7.548723664649711,
+        3.3901287311555417,
+    ]);
+    p.tolerance(0.0005, 0.0).run(&MotionCommand::Thickness(PerRole::all(0.08165518803440562)));
+    let position = v(-5.492354871902694e-5, -1.5521629035918187, -0.14954401230476103);
+    let axis = Some(v(-0.09462093991382936, 0.08900084993891791, 0.9915269670765258));
+    p.run(&MotionCommand::From { position, axis, name: String::new() }).part_side(PartSide::On);
+    let mode = AxisAngle::Lead(-0.049440945417280405);
+    p.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: true, angle: -0.10178205680357472, mode }));
+    p.go(&[(Relation::To, &drive), (Relation::On, &part), (Relation::On, &first)]);
+    p.side(DriveSide::Left).indirv(forward.x, forward.y, forward.z);
+    p.drive(Turn::Forward, &drive, Relation::Past, &stop);
+    let path = p.last();
+    let mut from = path.start.tip;
+    for to in &path.points {
+        assert!((to.tip - from).dot(&forward) > 0.0, "{path:?}");
+        from = to.tip;
+    }
+    proven(&p);
+}
