@@ -47,8 +47,10 @@ pub(super) fn twin(work: &StartUp<'_>, found: &Vec3) -> Option<Vec3> {
     let normals = work.roles.iter().map(|role| posture.contact(&role.gauge, tip).gradient);
     let about = normals.chain([tool.axis]).filter_map(|direction| direction.try_normalize(0.0));
     let images = about.map(|direction| direction * (2.0 * way.dot(&direction)) - way).chain([-way]);
+    // From a place all but there two lengths are the same to rounding over a greater share of the way.
+    let apart = (APART * length).max((2.0 * length * SAME_LENGTH * size).sqrt());
     let is_twin = |other: &Vec3| {
-        (other - found).norm() > APART * length
+        (other - found).norm() > apart
             && ((other - tip).norm() - length).abs() <= SAME_LENGTH * size
             && !is_nearer_between(attitude, &conditions, [found, other], tip)
     };

@@ -425,3 +425,35 @@ fn a_start_up_whose_axis_follows_looks_once_from_a_place_without_a_position() {
         assert!(count <= times * fixed, "{count} with {fixed}");
     }
 }
+
+/// From a place that is all but there no position beside the nearest is another answer: how far away either is differs by less than rounding tells.
+#[test]
+fn a_place_next_to_the_nearest_is_no_other_answer() {
+    let solid = quadric([
+        -0.14737141947101604,
+        0.08220842280658947,
+        -0.05410063852838261,
+        -1.1140667738725427,
+        -0.023783571734824545,
+        -0.092042842688767,
+        -0.0696986449129062,
+        0.3133324031756974,
+        -0.10397954811196013,
+        0.15245862163309726,
+    ]);
+    let floor = plane(-0.2798885629478282, -0.31690889606954054, 0.9062180443596258, 0.9335968840664657);
+    let [place, nearest] = [
+        v(2.6506935993967016, -1.1655666182467836, 1.441283678097008),
+        v(2.650690802261091, -1.1655762858231504, 1.4412794333931593),
+    ];
+    for share in [0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0] {
+        let from = nearest + (place - nearest) * share;
+        let mut p = Program::new();
+        p.cutter(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.001]).tolerance(2e-5, 3e-5);
+        let axis = v(-0.20426461867215745, -0.19536204372160154, 0.9592234554219561);
+        p.run(&MotionCommand::ToolAxis(ToolAxis::Fixed(axis))).from(from.x, from.y, from.z);
+        p.run(&MotionCommand::PartSurface(named(&floor)));
+        let outcome = p.attempt(&start(&[(Relation::To, &solid)]));
+        assert!(outcome.is_ok(), "{share}: {outcome:?}");
+    }
+}
