@@ -309,7 +309,7 @@ fn settle_following(
 }
 
 /// Where no position is found with the axis tilted as it is judged where the tool would come to stand with its present one: one with the axis tilted to the
-/// other side, if it is judged to be that there.
+/// other side, of which one is taken first that is judged to be that there. The next motion turns the tool where it is judged otherwise.
 fn tilted_otherwise(
     work: &mut StartUp<'_>,
     guide: Option<(Vec3, f64)>,
@@ -319,13 +319,19 @@ fn tilted_otherwise(
     let judged = work.attitude.clone();
     let is_told = matches!(failure, MotionFailure::StartUpDiverges { .. } | MotionFailure::BehindEnd { .. });
     let Some(other) = judged.to_other_side().filter(|_| is_told) else { return Err(failure) };
+    let mut contrary = None;
     for start in starts {
         work.attitude = other.clone();
         match settle(work, guide, start) {
             Err(MotionFailure::Cancelled) => return Err(MotionFailure::Cancelled),
             Ok(tip) if is_judged_alike(work, original, &tip) == Ok(true) => return Ok(tip),
-            _ => {}
+            Ok(tip) => contrary = contrary.or(Some(tip)),
+            Err(_) => {}
         }
+    }
+    if let Some(tip) = contrary {
+        work.attitude = other;
+        return Ok(tip);
     }
     work.attitude = judged;
     Err(failure)

@@ -76,6 +76,25 @@ fn a_tool_without_a_place_is_tilted_to_the_other_side() {
     proven(&p);
 }
 
+/// Tilted to either side it would be judged to tilt to the other one where it comes to stand, and there is a place with one of them alone.
+#[test]
+fn a_tool_starts_up_at_the_one_place_that_it_has_however_it_is_tilted_there() {
+    let under = cylinder(v(-3.02411, -2.40481, 1.71868), v(-0.08567, 0.15345, -0.98444), 2.40975);
+    let above = sphere(-0.49493, -1.66426, 4.98212, 3.47366);
+    let first = plane(0.281, -0.95971, 0.0, 1.23039);
+    let stop = cone(v(-5.6655, -1.36745, 6.42149), v(0.33262, 0.93903, 0.08712), 59.6142);
+    let mode = AxisAngle::Lead(-0.03855);
+    let mut p = Program::new();
+    p.tolerance(2e-5, 3e-5).cutter(&[0.5015, 0.13935]);
+    from(&mut p, v(-0.16086, -1.56996, 1.77915), Vec3::z());
+    p.part_side(PartSide::On);
+    along(&mut p, ToolAxis::AtAngle { part: false, angle: 0.06488, mode });
+    p.go(&[(Relation::On, &above), (Relation::On, &under), (Relation::To, &first)]);
+    p.side(DriveSide::On).indirv(-0.281, 0.95971, 0.0);
+    p.drive(Turn::Forward, &above, Relation::To, &stop);
+    proven(&p);
+}
+
 /// A start-up that goes straight at both surfaces leads in no direction along them: TLLFT and TLRGT tell where ahead is.
 #[test]
 fn the_side_of_the_tool_tells_where_a_lead_angle_leads() {
