@@ -207,7 +207,10 @@ impl Engine<'_> {
     /// Back off the part along the tool, with an axis that is at its end turned back, to where the tool stood; and on from there.
     pub(super) fn cut_turned_back(&mut self, target: &Target, back: Angles, to: Angles) {
         self.flush();
-        let Some((turning, position)) = self.turning.as_ref().zip(self.position) else { return };
+        let Some((turning, position)) = self.turning.as_ref().zip(self.position) else {
+            // From wherever the tool is nothing is divided, and nothing is turned back.
+            return self.cut_turning(target, to);
+        };
         let (tip, axis) = (turning.frame.part(position), turning.axis);
         let off = tip + axis * turning.rules.retract_mm.unwrap_or_default() * turning.unit;
         let (_, farthest) = turning.farthest(back);
