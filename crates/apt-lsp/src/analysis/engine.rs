@@ -91,6 +91,9 @@ impl Language for Engine {
         let sample =
             |title: &str, sample: &str| format!("\n{title}:\n\n```apt\n{}\n```\n", sample.trim_end());
         let mut text = format!("# {}: {}\n\n{}\n", page.code, page.title, page.text.trim());
+        if let Some(machine) = &page.machine {
+            text += &format!("\nThe tapes of the samples are for {machine}.\n");
+        }
         text.push_str(&sample("Wrong", &page.wrong));
         text.push_str(&sample("Right", &page.right));
         Some(text)
