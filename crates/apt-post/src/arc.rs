@@ -200,7 +200,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// The point nearest to `near` that is equally far from both ends.
-fn on_bisector(start: [f64; 2], end: [f64; 2], near: [f64; 2]) -> [f64; 2] {
+pub(crate) fn on_bisector(start: [f64; 2], end: [f64; 2], near: [f64; 2]) -> [f64; 2] {
     let chord = [end[0] - start[0], end[1] - start[1]];
     let square = chord[0] * chord[0] + chord[1] * chord[1];
     if square == 0.0 {

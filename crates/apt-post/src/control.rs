@@ -15,17 +15,36 @@ use crate::{
 
 /// What is written for a character of a remark that the control lacks.
 pub(crate) const REPLACEMENT: char = '?';
+/// The registers of a feed per minute, per revolution, and of an inverse time.
+pub(crate) const FEEDS: [&str; 3] = ["F", "FR", "FI"];
+
+/// A number for a placeholder.
+#[derive(Debug, Clone, Copy)]
+struct Number {
+    value: f64,
+    /// Written even when the control holds it already.
+    force: bool,
+}
 
 /// Values for the placeholders of a template.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Values {
-    numbers: BTreeMap<&'static str, f64>,
+    numbers: BTreeMap<&'static str, Number>,
     texts: BTreeMap<&'static str, String>,
 }
 
 impl Values {
     pub(crate) fn number(mut self, name: &'static str, value: f64) -> Self {
-        self.numbers.insert(name, value);
+        self.numbers.insert(name, Number { value, force: false });
+        self
+    }
+
+    pub(crate) fn words(mut self, words: &[Word]) -> Self {
+        let numbers = words.iter().map(|word| {
+            let Word { register, value, force } = *word;
+            (register, Number { value, force })
+        });
+        self.numbers.extend(numbers);
         self
     }
 
@@ -50,6 +69,16 @@ pub(crate) struct Word {
     pub(crate) value: f64,
     /// Written even when the control holds it already.
     pub(crate) force: bool,
+}
+
+/// What a template comes to.
+#[derive(Debug, Default)]
+struct Filled {
+    words: Vec<String>,
+    placeholders: usize,
+    /// How many placeholders have a text, and how many a number to write.
+    texts: usize,
+    numbers: usize,
 }
 
 /// The tape so far and the state of the control behind it.
@@ -155,12 +184,26 @@ impl<'a> Control<'a> {
         let modal = self.machine.registers.get(register).is_some_and(|definition| definition.modal);
         if modal {
             let same = self.held.get(register) == Some(&text);
+            if FEEDS.contains(&register) {
+                // A feed takes the place of one that another register told.
+                self.forget(&FEEDS);
+            }
             self.held.insert(register.to_owned(), text.clone());
             if same && !force {
                 return None;
             }
         }
         Some(text)
+    }
+
+    /// Notes what the control holds in a register by other words than its own.
+    pub(crate) fn hold(&mut self, register: &str, value: f64) {
+        let definition = self.machine.registers.get(register).filter(|definition| definition.modal);
+        let Some(definition) = definition else { return };
+        match definition.format(self.units == Units::Inches).text(value) {
+            Ok(text) => self.held.insert(register.to_owned(), format!("{}{text}", definition.address)),
+            Err(_) => self.held.remove(register),
+        };
     }
 
     /// Takes a register out of what the control is known to hold.
@@ -176,8 +219,12 @@ impl<'a> Control<'a> {
         self.modes.clear();
     }
 
-    /// Notes that a code is in force, and says whether it was not before. Codes without group always count as new.
+    /// Notes that a code is in force, and says whether it was not before. Codes without group always count as new; a control
+    /// for which a code is empty knows nothing else.
     pub(crate) fn set_mode(&mut self, code: &str) -> bool {
+        if code.is_empty() {
+            return false;
+        }
         let machine = self.machine;
         for (group, codes) in &machine.groups {
             if let Some(code) = codes.iter().find(|known| *known == code) {
@@ -215,8 +262,24 @@ impl<'a> Control<'a> {
 
     /// A block from a template; nothing when it has placeholders and none of them has something to write.
     pub(crate) fn template(&mut self, template: &str, values: &Values) {
-        let mut words: Vec<String> = Vec::new();
-        let (mut placeholders, mut written) = (0, 0);
+        let filled = self.filled(template, values);
+        if filled.placeholders == 0 || filled.texts + filled.numbers > 0 {
+            self.push_words(&filled.words);
+        }
+    }
+
+    /// A block of motion from a template; nothing when no register has something to write. Whether there is one.
+    pub(crate) fn motion_template(&mut self, template: &str, values: &Values) -> bool {
+        let filled = self.filled(template, values);
+        if filled.numbers > 0 {
+            self.push_words(&filled.words);
+        }
+        filled.numbers > 0
+    }
+
+    /// The words of a template that have something to write.
+    fn filled(&mut self, template: &str, values: &Values) -> Filled {
+        let mut filled = Filled::default();
         for word in template.split_whitespace() {
             let mut text = String::new();
             let mut complete = true;
@@ -224,10 +287,11 @@ impl<'a> Control<'a> {
                 match piece {
                     Piece::Literal(literal) => text.push_str(literal),
                     Piece::Placeholder { name, force } => {
-                        placeholders += 1;
+                        filled.placeholders += 1;
+                        let named = values.texts.contains_key(name);
                         match self.placeholder(name, force, values) {
                             Some(value) => {
-                                written += 1;
+                                *if named { &mut filled.texts } else { &mut filled.numbers } += 1;
                                 text.push_str(&value);
                             }
                             None => complete = false,
@@ -236,13 +300,18 @@ impl<'a> Control<'a> {
                 }
             }
             if complete && !text.is_empty() {
-                words.push(text);
+                filled.words.push(text);
             }
         }
-        if words.is_empty() || placeholders > 0 && written == 0 {
+        filled
+    }
+
+    /// A block of words, of which some may be codes.
+    fn push_words(&mut self, words: &[String]) {
+        if words.is_empty() {
             return;
         }
-        for word in &words {
+        for word in words {
             self.set_mode(word);
         }
         let separator = if self.machine.block.spaces { " " } else { "" };
@@ -253,8 +322,8 @@ impl<'a> Control<'a> {
         if let Some(text) = values.texts.get(name) {
             return Some(text.clone()).filter(|text| !text.is_empty());
         }
-        let value = values.numbers.get(name)?;
-        self.register_word(name, *value, force)
+        let number = values.numbers.get(name)?;
+        self.register_word(name, number.value, force || number.force)
     }
 
     pub(crate) fn templates(&mut self, templates: &[String], values: &Values) {
@@ -269,6 +338,15 @@ impl<'a> Control<'a> {
             self.set_mode(word);
         }
         self.push_block(code);
+    }
+
+    /// A code of a function of the machine that no motion goes with, as the control takes it.
+    pub(crate) fn function(&mut self, code: &str) {
+        let machine = self.machine;
+        if machine.templates.function.is_empty() {
+            return self.code(code);
+        }
+        self.template(&machine.templates.function, &Values::default().text("code", code));
     }
 
     /// A comment or message; characters that would end it are replaced, others that the control lacks reported.
@@ -291,6 +369,7 @@ impl<'a> Control<'a> {
 
     /// Appends a block, with skip mark and sequence number where they belong.
     pub(crate) fn push_block(&mut self, text: &str) {
+        let sequence = self.machine.block.sequence;
         let plain = text.is_empty() || text.starts_with(['%', 'O', '(', ';']);
         let mut block = String::new();
         if let Some(level) = self.skip
@@ -301,7 +380,7 @@ impl<'a> Control<'a> {
                 block.push_str(&level.to_string());
             }
         }
-        if self.numbering.on && !plain {
+        if sequence.every_line || self.numbering.on && !plain {
             if self.numbering.count.is_multiple_of(self.numbering.every) {
                 let number = self.numbering.next;
                 if let Some(word) = self.number_text("N", f64::from(number)) {
@@ -311,7 +390,6 @@ impl<'a> Control<'a> {
                     }
                 }
                 let after = number.saturating_add(self.numbering.step);
-                let sequence = self.machine.block.sequence;
                 self.numbering.next = if after > sequence.max { sequence.start } else { after };
             }
             self.numbering.count = self.numbering.count.wrapping_add(1);

@@ -4,6 +4,7 @@ use apt_geometry::Vec3;
 
 use super::{
     Engine,
+    blocks::Shape,
     hole::{Cycle, SHIFT},
 };
 use crate::{
@@ -13,8 +14,8 @@ use crate::{
 
 /// Most passes into which a hole is expanded.
 const MOST_PASSES: u32 = 10_000;
-/// Gap left above the last depth when a peck comes back, in millimetres.
-const PECK_GAP_MM: f64 = 0.25;
+/// Gap left above the last depth when a peck comes back, and how far the tool goes back to break a chip, in millimetres.
+pub(super) const PECK_GAP_MM: f64 = 0.25;
 
 impl Engine<'_> {
     /// The cycle as single moves.
@@ -54,7 +55,7 @@ impl Engine<'_> {
         let stops = cycle.name == "bore" && self.spindle.on;
         if stops {
             let machine = self.machine;
-            self.control.code(&machine.codes.spindle_off);
+            self.control.function(&machine.codes.spindle_off);
         }
         self.rapid_to(self.at_height(&top, level));
         if stops {
@@ -93,7 +94,7 @@ impl Engine<'_> {
                 let values = Values::default().number("R", angle);
                 self.control.template(&machine.templates.spindle_orient, &values);
             }
-            (_, Some(code)) => self.control.code(code),
+            (_, Some(code)) => self.control.function(code),
             (_, None) => {}
         }
         let (x, y) = cycle.shift.unwrap_or_default();
@@ -112,7 +113,7 @@ impl Engine<'_> {
         if self.feed_mode(&machine.codes.feed_per_minute) {
             self.control.code(&machine.codes.feed_per_minute);
         }
-        self.control.motion(&[], &[&machine.codes.linear], &words);
+        self.cut(&[], None, &Shape::Linear, &words);
         self.position = Some(self.rounded(position));
     }
 }

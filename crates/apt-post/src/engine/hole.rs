@@ -5,9 +5,9 @@ mod statement;
 use apt_geometry::Vec3;
 use smol_str::SmolStr;
 
-use super::{Engine, motion::AXES};
+use super::{Engine, expansion::PECK_GAP_MM, motion::AXES};
 use crate::{
-    control::Values,
+    control::{Values, Word},
     finding::PostFindingKind,
     machine::CycleTemplate,
     words::{FeedMode, Retract},
@@ -254,12 +254,14 @@ impl Engine<'_> {
             .number("Y", top.y)
             .number("Z", top.z - cycle.depth)
             .number("R", plane)
+            .words(&self.heights_from_top(cycle, top, plane, level))
             .number("ZR", plane)
             .number("ZI", level)
             .number("P", if milliseconds { cycle.dwell * MILLISECONDS_PER_SECOND } else { cycle.dwell })
             .optional("Q", cycle.shift.map(|(x, y)| x.hypot(y)).or(cycle.step))
             .optional(REPEATS, (cycle.times > 1).then_some(f64::from(cycle.times)))
             .optional("F", cycle.feed)
+            .optional("FQ", cycle.feed)
             .optional("K", cycle.pitch)
             .optional("S", self.spindle.speed)
             .text("return", back.clone().unwrap_or_default())
@@ -273,7 +275,8 @@ impl Engine<'_> {
         let moves = self.control.changes(AXES[0], top.x) || self.control.changes(AXES[1], top.y);
         let same = cycle.open.is_some_and(|open| self.same(open.top, top.z) && open.feed == cycle.feed);
         if same && moves {
-            return self.control.template(next, &values);
+            self.control.template(next, &values);
+            return self.again(cycle, template, on, &values);
         }
         let machine = self.machine;
         self.level_plane();
@@ -285,8 +288,38 @@ impl Engine<'_> {
         {
             self.control.template(pre, &values);
         }
+        if !same {
+            self.control.templates(&template.define, &values);
+        }
         self.control.template(on, &values);
+        self.again(cycle, template, on, &values);
         cycle.open = Some(Open { top: top.z, feed: cycle.feed });
+    }
+
+    /// Makes a hole as often as is asked for, where the control is told at every hole to make it.
+    fn again(&mut self, cycle: &Cycle, template: &CycleTemplate, on: &str, values: &Values) {
+        let more = if template.define.is_empty() { 0 } else { cycle.times.saturating_sub(1) };
+        for _ in 0..more {
+            if self.patience.ends_after(1) {
+                return;
+            }
+            self.control.template(on, values);
+        }
+    }
+
+    /// A hole as seen from its top: where that is, clearance, depth and the height that the tool goes back to, all between
+    /// places as the control reads them, and how far it goes back to break a chip.
+    fn heights_from_top(&self, cycle: &Cycle, top: Vec3, plane: f64, level: f64) -> [Word; 5] {
+        let read = |height| self.control.rounded(AXES[2], height);
+        let surface = read(top.z);
+        let words = [
+            ("ZT", surface),
+            ("RC", read(plane) - surface),
+            ("RB", read(level) - surface),
+            ("DP", surface - read(top.z - cycle.depth)),
+            ("CB", self.tape_length(PECK_GAP_MM)),
+        ];
+        words.map(|(register, value)| Word { register, value, force: true })
     }
 
     /// A dwell of some seconds.
@@ -294,6 +327,6 @@ impl Engine<'_> {
         let machine = self.machine;
         let milliseconds = machine.templates.dwell_in_milliseconds;
         let value = if milliseconds { seconds * MILLISECONDS_PER_SECOND } else { seconds };
-        self.control.template(&machine.templates.dwell, &Values::default().number("P", value));
+        self.control.templates(&machine.templates.dwell, &Values::default().number("P", value));
     }
 }

@@ -1,6 +1,9 @@
 //! The post-processor itself: takes the records in order and makes blocks.
 
+mod arcs;
+mod blocks;
 mod expansion;
+mod helix;
 mod hole;
 mod motion;
 mod rotary_statement;
@@ -183,7 +186,13 @@ struct Engine<'a> {
     circles: Pieces<Circle>,
     /// Circle of the motion record that comes next.
     next_circle: Option<usize>,
+    /// A helix of the run that is being made whose block waits.
+    helix: Option<helix::Helix>,
+    /// Where the last one has led the control.
+    led_to: Option<helix::Led>,
     compensation: Option<PendingCompensation>,
+    /// The codes of the compensation in force.
+    compensation_code: String,
     /// Whether the tape has switched compensation on: a motion has taken the code.
     compensating: bool,
     /// Whether the last CUTCOM switched compensation on.
@@ -208,6 +217,8 @@ struct Engine<'a> {
     closed: bool,
     after_fini_told: bool,
     named: bool,
+    /// Its number, for the blocks at both ends.
+    program: String,
     /// Whether a MACHIN has been seen.
     machine_named: bool,
 }
@@ -260,7 +271,10 @@ impl<'a> Engine<'a> {
             run: Pieces::default(),
             circles: Pieces::default(),
             next_circle: None,
+            helix: None,
+            led_to: None,
             compensation: None,
+            compensation_code: machine.codes.compensation_off.clone().unwrap_or_default(),
             compensating: false,
             compensated: false,
             cycle: None,
@@ -278,6 +292,7 @@ impl<'a> Engine<'a> {
             closed: false,
             after_fini_told: false,
             named: false,
+            program: String::new(),
             machine_named: false,
         }
     }
@@ -335,7 +350,8 @@ impl<'a> Engine<'a> {
         self.end_program();
         self.closed = true;
         let machine = self.machine;
-        self.control.templates(&machine.templates.trailer, &Values::default());
+        let values = self.program_values();
+        self.control.templates(&machine.templates.trailer, &values);
     }
 
     /// Something behind FINI, told once.

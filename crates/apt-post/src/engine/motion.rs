@@ -3,25 +3,18 @@
 use apt_cldata::record::{ClPoint, POSITIONS_A_UNIT};
 use apt_geometry::Vec3;
 
-use super::{Engine, Feed, RunPoint, turning::Way};
+use super::{Engine, Feed, RunPoint, blocks::Shape, turning::Way};
 use crate::{
-    arc::{self, Arc, ArcLimits},
-    control::{Values, Word},
+    arc,
+    control::{FEEDS, Values, Word},
     finding::PostFindingKind,
-    machine::{ArcCenter, ArcPlane, RADIUS},
     words::FeedMode,
 };
 
 /// The linear axes by coordinate.
 pub(super) const AXES: [&str; 3] = ["X", "Y", "Z"];
-/// The registers of an arc's centre by coordinate.
-const CENTERS: [&str; 3] = ["I", "J", "K"];
-/// The registers of a feed per minute, per revolution, and of an inverse time.
-const FEEDS: [&str; 3] = ["F", "FR", "FI"];
-/// How far the axis of a circle may lean from a machine axis, as the sine of the angle.
-const PLANE_TOLERANCE: f64 = 1e-7;
 /// OUTTOL of a program that states none: .0005 inch.
-const DEFAULT_OUTTOL_MM: f64 = 0.0127;
+pub(super) const DEFAULT_OUTTOL_MM: f64 = 0.0127;
 
 impl Engine<'_> {
     pub(super) fn motion(&mut self, from: bool, points: &[ClPoint]) {
@@ -131,7 +124,7 @@ impl Engine<'_> {
             // The length of a tool that leans is known to the control once it follows the tool end.
             self.follow();
             if !coolant.is_empty() {
-                self.control.code(coolant);
+                self.control.function(coolant);
             }
         }
         if let Some(coolant) = coolant.filter(|_| !self.is_followed()) {
@@ -141,6 +134,7 @@ impl Engine<'_> {
                 .number("Y", position.y)
                 .number("Z", position.z)
                 .number("H", f64::from(self.length_offset))
+                .text("compensation", self.compensation_code.clone())
                 .text("coolant", coolant);
             self.control.template(&machine.templates.first_xy, &values);
             self.control.template(&machine.templates.first_z, &values);
@@ -148,7 +142,7 @@ impl Engine<'_> {
             self.work_offset_now();
             for place in self.rapid_corner(position).into_iter().chain([position]) {
                 let off = self.compensation_off(place);
-                self.control.motion(&off, &[&machine.codes.rapid], &self.axis_words(place));
+                self.rapid_block(&off, &self.axis_words(place));
             }
         }
         self.skipped = false;
@@ -160,10 +154,10 @@ impl Engine<'_> {
         if self.compensated || !self.moves_in_plane(place) {
             return Vec::new();
         }
-        let Some(pending) = self.compensation.take() else { return Vec::new() };
+        let Some(codes) = self.compensation_codes() else { return Vec::new() };
         self.compensating = false;
         self.level_plane();
-        pending.words
+        codes
     }
 
     /// Whether a position is another one in the plane of holes and of cutter compensation.
@@ -191,9 +185,8 @@ impl Engine<'_> {
     pub(super) fn rapid_to_height(&mut self, height: f64) {
         self.check_axis(AXES[2], height);
         self.approach_now();
-        let machine = self.machine;
         let word = Word { register: AXES[2], value: height, force: true };
-        self.control.motion(&[], &[&machine.codes.rapid], &[word]);
+        self.rapid_block(&[], &[word]);
     }
 
     /// Makes blocks of the waiting run.
@@ -210,6 +203,7 @@ impl Engine<'_> {
             self.group(group);
             rest = others;
         }
+        self.helix_now();
         self.control.place = here;
     }
 
@@ -294,55 +288,6 @@ impl Engine<'_> {
         self.find(PostFindingKind::ArcAsChords { deviation });
     }
 
-    /// The planes in which a group may be an arc, and the centre that its circle record states.
-    fn planes(&self, points: &[RunPoint]) -> (Vec<ArcPlane>, Option<Vec3>) {
-        // A control that compensates stays in the plane in which it does.
-        let compensates = self.compensated || self.compensation.is_some();
-        let possible = |plane: &ArcPlane| !compensates || *plane == ArcPlane::Xy;
-        let possible: Vec<ArcPlane> = self.machine.arc.planes.iter().copied().filter(possible).collect();
-        let circle = points.first().and_then(|point| point.circle).and_then(|index| self.circles.get(index));
-        let Some(circle) = circle else {
-            let planes = if self.fit_points { possible } else { Vec::new() };
-            return (planes, None);
-        };
-        let (center, axis) = match &self.turning {
-            Some(turning) => (turning.frame.place(circle.center), turning.frame.rotation * circle.axis),
-            None => (circle.center, circle.axis),
-        };
-        let across = |plane: &ArcPlane| {
-            let [u, v, _] = arc::plane_axes(*plane);
-            axis[u].hypot(axis[v]) <= PLANE_TOLERANCE * axis.norm()
-        };
-        let planes: Vec<ArcPlane> = possible.into_iter().filter(across).collect();
-        let center = (!planes.is_empty()).then_some(center);
-        (planes, center)
-    }
-
-    fn arc_limits(&self, vouched: bool) -> ArcLimits<'_> {
-        let rules = &self.machine.arc;
-        let own = self.arc_tolerance.unwrap_or_else(|| self.tape_length(rules.tolerance_mm));
-        // A circle record comes from the arithmetic element, which has a tolerance also when the program states none.
-        let band = match (self.intol, self.outtol) {
-            (None, None) if vouched => self.tape_length(DEFAULT_OUTTOL_MM),
-            (intol, outtol) => intol.unwrap_or(0.0) + outtol.unwrap_or(0.0),
-        };
-        let sweep = rules.split_degrees.to_radians();
-        let register = self.machine.registers.get("X");
-        let inch = self.control.units == apt_cldata::record::Units::Inches;
-        ArcLimits {
-            tolerance: if vouched { own + band } else { own },
-            height_tolerance: own,
-            chord_tolerance: band,
-            least_radius: self.tape_length(rules.min_radius_mm),
-            greatest_radius: self.tape_length(rules.max_radius_mm),
-            sweep: if vouched { sweep } else { sweep.min(std::f64::consts::PI) },
-            helix: rules.helix,
-            resolution: register.map_or(f64::EPSILON, |register| register.format(inch).resolution()),
-            least_points: rules.fit_least_points,
-            patience: self.patience,
-        }
-    }
-
     /// What has to be in order before the tool cuts.
     pub(super) fn check_cutting(&mut self) {
         if self.feed.is_none() && !self.feed_reported {
@@ -421,13 +366,14 @@ impl Engine<'_> {
                 self.control.template(&machine.templates.length_offset, &values);
             }
             if !coolant.is_empty() {
-                self.control.code(&coolant);
+                self.control.function(&coolant);
             }
         }
     }
 
     /// A straight move at feed rate to a rounded position.
     pub(super) fn linear_to(&mut self, position: Vec3) {
+        self.helix_now();
         let moves =
             AXES.into_iter().zip(position.iter()).any(|(name, value)| self.control.changes(name, *value));
         if !moves {
@@ -439,19 +385,14 @@ impl Engine<'_> {
         self.check_cutting();
         let length = self.position.map_or(0.0, |start| (position - start).norm());
         let (feed_code, feed) = self.feed_words(length);
-        let before = if self.moves_in_plane(position) {
-            self.compensation.take().map(|pending| pending.words)
-        } else {
-            None
-        };
-        let machine = self.machine;
+        let before = if self.moves_in_plane(position) { self.compensation_codes() } else { None };
         if before.is_some() {
             self.compensating = self.compensated;
             self.level_plane();
         }
         let mut words = self.axis_words(position);
         words.extend(feed);
-        self.cut(&before.unwrap_or_default(), feed_code, &[&machine.codes.linear], &words);
+        self.cut(&before.unwrap_or_default(), feed_code, &Shape::Linear, &words);
         self.skipped = false;
         self.position = Some(position);
     }
@@ -462,85 +403,5 @@ impl Engine<'_> {
         if self.control.set_mode(&machine.codes.plane_xy) {
             self.control.code(&machine.codes.plane_xy);
         }
-    }
-
-    /// A cutting block; a new feed mode makes the control forget its feed rate.
-    pub(super) fn cut(
-        &mut self,
-        before: &[String],
-        feed_code: Option<String>,
-        codes: &[&str],
-        words: &[Word],
-    ) {
-        let mut before = before.to_vec();
-        if let Some(code) = feed_code
-            && self.feed_mode(&code)
-        {
-            before.push(code);
-        }
-        self.control.motion(&before, codes, words);
-    }
-
-    /// An arc to a rounded position: of one block, or of as many as a control takes that is told no centre.
-    fn arc_to(&mut self, end: Vec3, plane: ArcPlane, fitted: &Arc) {
-        let Some(start) = self.position else { return };
-        let rules = &self.machine.arc;
-        let inch = self.control.units == apt_cldata::record::Units::Inches;
-        let radius = self.machine.registers.get(RADIUS).filter(|_| rules.center == ArcCenter::Radius);
-        let ends = match radius {
-            Some(register) => {
-                let own = self.arc_tolerance.unwrap_or_else(|| self.tape_length(rules.tolerance_mm));
-                let rounded = |place| self.rounded(place);
-                fitted.told_by_radius((&start, &end), plane, (register.format(inch), own), &rounded)
-            }
-            None => vec![end],
-        };
-        let parts = ends.len();
-        let arc = Arc { full_turn: fitted.full_turn && parts == 1, ..*fitted };
-        for part in ends {
-            self.part_of_arc(part, plane, (&arc, fitted.radius(&start, plane)), parts);
-        }
-    }
-
-    /// One of so many equal parts of an arc with a radius, to a rounded position.
-    fn part_of_arc(&mut self, end: Vec3, plane: ArcPlane, (arc, radius): (&Arc, f64), parts: usize) {
-        let Some(start) = self.position else { return };
-        self.work_offset_now();
-        self.check_travel(end);
-        self.check_cutting();
-        let [u, v, w] = arc::plane_axes(plane);
-        let machine = self.machine;
-        let codes = &machine.codes;
-        let plane_code = match plane {
-            ArcPlane::Xy => &codes.plane_xy,
-            ArcPlane::Zx => &codes.plane_zx,
-            ArcPlane::Yz => &codes.plane_yz,
-        };
-        let turn = if arc.counterclockwise { &codes.counterclockwise } else { &codes.clockwise };
-        let forced = |register, value| Word { register, value, force: true };
-        let mut words = vec![
-            forced(AXES[u], end[u]),
-            forced(AXES[v], end[v]),
-            Word { register: AXES[w], value: end[w], force: false },
-        ];
-        match machine.arc.center {
-            ArcCenter::Incremental => {
-                words.extend([u, v].map(|axis| forced(CENTERS[axis], arc.center[axis] - start[axis])));
-            }
-            ArcCenter::Absolute => {
-                words.extend([u, v].map(|axis| forced(CENTERS[axis], arc.center[axis])));
-            }
-            ArcCenter::Radius => words.push(forced(RADIUS, radius)),
-        }
-        let sweep = arc.sweep(&start, &end, plane);
-        let length = (sweep * radius).hypot(end[w] - start[w]);
-        let (feed_code, mut feed) = self.feed_words(length);
-        if let Some(word) = feed.as_mut().filter(|_| self.feed.is_some_and(Feed::is_time)) {
-            // The time of the program is that of the whole arc.
-            word.value = (word.value * parts as f64).min(self.control.greatest(word.register));
-        }
-        words.extend(feed);
-        self.cut(&[], feed_code, &[plane_code, turn], &words);
-        self.position = Some(end);
     }
 }

@@ -86,8 +86,8 @@ impl Engine<'_> {
         }
         self.first_tool = first(records, self.patience, |record| loads_tool(record).then_some(record.isn));
         let text = name.map_or("", |(_, text)| text);
-        let program = program_number(text).to_string();
-        let values = Values::default().text("unit", self.unit_code()).text("program", program);
+        self.program = program_number(text).to_string();
+        let values = self.program_values();
         let machine = self.machine;
         for template in &machine.templates.program_start {
             if template.contains("{partno}") {
@@ -107,11 +107,18 @@ impl Engine<'_> {
         self.work_offset = WorkOffset::Due;
         self.control.forget_all();
         let machine = self.machine;
-        let values = Values::default().text("unit", self.unit_code());
-        for template in machine.templates.program_start.iter().filter(|template| template.contains("{unit}"))
-        {
+        self.compensation_code = machine.codes.compensation_off.clone().unwrap_or_default();
+        let values = self.program_values();
+        // The frame of the program stays.
+        let again = |template: &&String| template.contains("{unit}") && !template.contains("{program}");
+        for template in machine.templates.program_start.iter().filter(again) {
             self.control.template(template, &values);
         }
+    }
+
+    /// What the blocks at both ends of a program have to say of it.
+    pub(super) fn program_values(&self) -> Values {
+        Values::default().text("unit", self.unit_code()).text("program", self.program.clone())
     }
 
     /// The code of the unit of the tape.

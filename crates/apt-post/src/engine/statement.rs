@@ -73,7 +73,7 @@ impl Engine<'_> {
             "CYCLE" => self.cycle_statement(&arguments),
             "DELAY" | "DWELL" => self.delay_statement(&arguments),
             "STOP" => self.control.code(&machine.codes.stop),
-            "OPSTOP" | "ISTOP" => self.control.code(&machine.codes.optional_stop),
+            "OPSTOP" | "ISTOP" => self.control.function(&machine.codes.optional_stop),
             "END" | "REWIND" => {
                 self.unused();
                 self.end_program();
@@ -404,6 +404,9 @@ impl Engine<'_> {
     }
 
     fn sequence_statement(&mut self, arguments: &Arguments<'_>) {
+        if self.machine.block.sequence.every_line {
+            return self.find(PostFindingKind::NotSupported { word: arguments.word.clone() });
+        }
         if arguments.has("ON") || arguments.has("OFF") {
             self.control.numbering.on = arguments.has("ON");
             return;
@@ -459,13 +462,16 @@ impl Engine<'_> {
 
     /// AUXFUN and PREFUN: an M or G code as it stands.
     fn function(&mut self, arguments: &Arguments<'_>, letter: &str) {
+        if letter == "G" && !self.machine.registers.contains_key(letter) {
+            return self.find(PostFindingKind::NotSupported { word: arguments.word.clone() });
+        }
         match arguments.number() {
             Some(number) if (0.0..=LARGEST_CODE).contains(&number) => {
                 let tenths = (number * 10.0).round() / 10.0;
                 let code = format!("{letter}{tenths}");
                 self.note_work_offset(&code);
                 self.check_function(arguments.word, &code);
-                self.control.code(&code);
+                self.control.function(&code);
             }
             Some(value) => {
                 let word = arguments.word.clone();

@@ -1,6 +1,6 @@
 //! Tools, spindle, coolant, cutter compensation.
 
-use apt_cldata::record::{ClWord, Units};
+use apt_cldata::record::{ClKind, ClWord, Units};
 
 use super::{Engine, MILLIMETERS_PER_INCH, PendingCompensation, Spindle, hole::Cycle};
 use crate::{control::Values, finding::PostFindingKind, words::Arguments};
@@ -9,6 +9,15 @@ use crate::{control::Values, finding::PostFindingKind, words::Arguments};
 const LARGEST_TOOL: f64 = 99_999.0;
 const INCHES_PER_FOOT: f64 = 12.0;
 const MILLIMETERS_PER_METER: f64 = 1000.0;
+
+/// Minor words of SPINDL, and those that stop it.
+const SPINDLE_WORDS: [&str; 19] = [
+    "RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "OFF", "ORIENT", "LOCK", "MAXRPM", "LOW", "MEDIUM", "HIGH",
+    "AUTO", "RANGE", "RADIUS", "DIAMTR", "BOTH", "NEUTRL",
+];
+const STOPS: [&str; 3] = ["OFF", "ORIENT", "LOCK"];
+/// Words behind which another tool is in the spindle, or none.
+const TOOL_WORDS: [&str; 5] = ["LOADTL", "LOAD", "TOOLNO", "TURRET", "UNLOAD"];
 
 impl Engine<'_> {
     /// A tool or offset number.
@@ -57,19 +66,23 @@ impl Engine<'_> {
         let machine = self.machine;
         if self.spindle.on {
             self.find(PostFindingKind::ToolChangeWhile { what: "SPINDL".into() });
-            self.control.code(&machine.codes.spindle_off);
+            self.control.function(&machine.codes.spindle_off);
             self.spindle.on = false;
         }
         // What has waited for a motion in vain is not on yet.
         if self.coolant && self.approach.is_none() {
-            self.control.code(&machine.codes.coolant_off);
+            self.control.function(&machine.codes.coolant_off);
         }
         self.follow_no_more(false);
         let length = arguments.after("LENGTH").map(|length| length * self.scale);
         if let Some(turning) = &mut self.turning {
             turning.load(length);
         }
-        let values = Values::default().number("T", f64::from(number)).number("H", f64::from(offset));
+        let speed = if unload { None } else { self.speed_ahead() };
+        let values = Values::default()
+            .number("T", f64::from(number))
+            .number("H", f64::from(offset))
+            .optional("S", speed);
         self.control.templates(&machine.templates.tool_change, &values);
         self.tool = Some(number);
         self.length_offset = offset;
@@ -93,11 +106,7 @@ impl Engine<'_> {
     }
 
     pub(super) fn spindle_statement(&mut self, arguments: &Arguments<'_>) {
-        const KNOWN: [&str; 19] = [
-            "RPM", "SFM", "SMM", "CLW", "CCLW", "ON", "OFF", "ORIENT", "LOCK", "MAXRPM", "LOW", "MEDIUM",
-            "HIGH", "AUTO", "RANGE", "RADIUS", "DIAMTR", "BOTH", "NEUTRL",
-        ];
-        if let Some(kind) = arguments.unknown(&KNOWN) {
+        if let Some(kind) = arguments.unknown(&SPINDLE_WORDS) {
             return self.find(kind);
         }
         self.spindle_reported = false;
@@ -107,13 +116,13 @@ impl Engine<'_> {
         }
         let machine = self.machine;
         if arguments.has("OFF") {
-            self.control.code(&machine.codes.spindle_off);
+            self.control.function(&machine.codes.spindle_off);
             self.spindle.on = false;
             return;
         }
         if arguments.has("ORIENT") || arguments.has("LOCK") {
             match &machine.codes.spindle_orient {
-                Some(code) => self.control.code(code),
+                Some(code) => self.control.function(code),
                 None => self.find(PostFindingKind::NoCode {
                     word: arguments.word.clone(),
                     name: "spindle_orient".into(),
@@ -150,11 +159,34 @@ impl Engine<'_> {
             false => machine.codes.spindle_clockwise.clone(),
         };
         let values = Values::default().number("S", speed).text("direction", direction);
+        self.control.template(&machine.templates.spindle_speed, &values);
         self.control.template(&machine.templates.spindle_on, &values);
     }
 
     /// Revolutions per minute, within the machine's range.
     fn spindle_speed(&mut self, arguments: &Arguments<'_>) -> Option<f64> {
+        let speed = match self.stated_speed(arguments, self.cutter_diameter) {
+            Ok(speed) => speed,
+            Err(kind) => {
+                self.find(kind);
+                return None;
+            }
+        };
+        let [least, greatest] = self.speed_range(self.spindle.maximum);
+        if !(least..=greatest).contains(&speed) {
+            self.find(PostFindingKind::SpindleOutOfRange { value: speed, least, greatest });
+        }
+        Some(speed.clamp(least.min(greatest), greatest))
+    }
+
+    /// Least and greatest revolutions per minute.
+    fn speed_range(&self, maximum: Option<f64>) -> [f64; 2] {
+        let [least, greatest] = self.machine.limits.spindle.unwrap_or([0.0, f64::INFINITY]);
+        [least, maximum.map_or(greatest, |maximum| maximum.min(greatest))]
+    }
+
+    /// Revolutions per minute that a statement asks for, with a cutter of some diameter.
+    fn stated_speed(&self, arguments: &Arguments<'_>, diameter: Option<f64>) -> Result<f64, PostFindingKind> {
         let stated = arguments.items.iter().enumerate().find_map(|(at, item)| match item {
             ClWord::Number(number) => {
                 let keyword = at.checked_sub(1).and_then(|before| arguments.items.get(before));
@@ -164,49 +196,77 @@ impl Engine<'_> {
             ClWord::Word(_) => None,
         });
         let surface_speed = arguments.has("SFM") || arguments.has("SMM");
-        let mut speed = match stated {
-            None => {
-                let speed = self.spindle.speed;
-                if speed.is_none() {
-                    self.find(PostFindingKind::NoSpindleSpeed);
-                }
-                speed?
-            }
-            Some(value) if surface_speed => {
-                let stated = arguments
-                    .after("DIAMTR")
-                    .or_else(|| arguments.after("RADIUS").map(|radius| radius * 2.0));
-                let diameter = stated.map(|diameter| diameter * self.scale).or(self.cutter_diameter);
-                let Some(diameter) = diameter.filter(|diameter| *diameter > 0.0) else {
-                    self.find(PostFindingKind::NoCutterDiameter);
-                    return None;
-                };
-                let millimeters = if self.control.units == Units::Inches {
-                    diameter * MILLIMETERS_PER_INCH
-                } else {
-                    diameter
-                };
-                let per_minute = if arguments.has("SFM") {
-                    value * INCHES_PER_FOOT * MILLIMETERS_PER_INCH
-                } else {
-                    value * MILLIMETERS_PER_METER
-                };
-                per_minute / (std::f64::consts::PI * millimeters)
-            }
+        let speed = match stated {
+            None => self.spindle.speed.ok_or(PostFindingKind::NoSpindleSpeed)?,
+            Some(value) if surface_speed => self.turns_at(arguments, value, diameter)?,
             Some(value) => value,
         };
         if speed <= 0.0 || speed.is_nan() {
             let word = arguments.word.clone();
-            self.find(PostFindingKind::BadValue { word, argument: "speed".into(), value: speed });
+            return Err(PostFindingKind::BadValue { word, argument: "speed".into(), value: speed });
+        }
+        Ok(speed)
+    }
+
+    /// Revolutions per minute at which the edge of a cutter goes so far in a minute.
+    fn turns_at(
+        &self,
+        arguments: &Arguments<'_>,
+        value: f64,
+        diameter: Option<f64>,
+    ) -> Result<f64, PostFindingKind> {
+        let stated =
+            arguments.after("DIAMTR").or_else(|| arguments.after("RADIUS").map(|radius| radius * 2.0));
+        let diameter = stated.map(|diameter| diameter * self.scale).or(diameter);
+        let diameter =
+            diameter.filter(|diameter| *diameter > 0.0).ok_or(PostFindingKind::NoCutterDiameter)?;
+        let millimeters = match self.control.units {
+            Units::Inches => diameter * MILLIMETERS_PER_INCH,
+            Units::Millimeters => diameter,
+        };
+        let per_minute = if arguments.has("SFM") {
+            value * INCHES_PER_FOOT * MILLIMETERS_PER_INCH
+        } else {
+            value * MILLIMETERS_PER_METER
+        };
+        Ok(per_minute / (std::f64::consts::PI * millimeters))
+    }
+
+    /// The speed with which a control is told of a tool that has to be told of both at once: that of the statement between the
+    /// tool and its first motion, or the one in force.
+    fn speed_ahead(&self) -> Option<f64> {
+        let templates = self.machine.templates.tool_change.iter();
+        if !templates.flat_map(|text| crate::template::register_names(text)).any(|name| name == "S") {
             return None;
         }
-        let [least, greatest] = self.machine.limits.spindle.unwrap_or([0.0, f64::INFINITY]);
-        let greatest = self.spindle.maximum.map_or(greatest, |maximum| maximum.min(greatest));
-        if !(least..=greatest).contains(&speed) {
-            self.find(PostFindingKind::SpindleOutOfRange { value: speed, least, greatest });
-            speed = speed.clamp(least.min(greatest), greatest);
+        let mut diameter = self.cutter_diameter;
+        let mut maximum = self.spindle.maximum;
+        for record in self.records.get(self.at + 1..).unwrap_or_default() {
+            if self.patience.ends_after(1) {
+                break;
+            }
+            match &record.kind {
+                ClKind::Motion { from: false, .. } | ClKind::End => break,
+                ClKind::Postprocessor { word, .. } if TOOL_WORDS.contains(&word.as_str()) => break,
+                ClKind::Control { word, arguments, .. } if word == "CUTTER" => {
+                    diameter = (Arguments { word, items: arguments }).number().map(|d| d.abs() * self.scale);
+                }
+                ClKind::Postprocessor { word, arguments, .. } if word == "SPINDL" => {
+                    let arguments = Arguments { word, items: arguments };
+                    maximum = arguments.after("MAXRPM").or(maximum);
+                    let stops = STOPS.iter().any(|stop| arguments.has(stop));
+                    let only_maximum = arguments.has("MAXRPM") && arguments.numbers().count() == 1;
+                    if stops || only_maximum || arguments.unknown(&SPINDLE_WORDS).is_some() {
+                        continue;
+                    }
+                    let [least, greatest] = self.speed_range(maximum);
+                    let speed = self.stated_speed(&arguments, diameter).ok()?;
+                    return Some(speed.clamp(least.min(greatest), greatest));
+                }
+                _ => {}
+            }
         }
-        Some(speed)
+        self.spindle.speed
     }
 
     pub(super) fn coolant_statement(&mut self, arguments: &Arguments<'_>) {
@@ -221,7 +281,7 @@ impl Engine<'_> {
                 self.approach = self.approach.take().map(|_| String::new());
                 self.coolant = false;
                 let code = codes.coolant_off.clone();
-                return self.control.code(&code);
+                return self.control.function(&code);
             }
             "ON" => self.coolant_code.clone().or_else(|| Some(codes.coolant_flood.clone())),
             "FLOOD" | "TAPKUL" | "TAP" => Some(codes.coolant_flood.clone()),
@@ -250,7 +310,7 @@ impl Engine<'_> {
                 if self.machine.rules.coolant_after_spindle && !self.spindle.on {
                     self.find(PostFindingKind::CoolantBeforeSpindle);
                 }
-                self.control.code(&code);
+                self.control.function(&code);
             }
         }
     }
@@ -258,7 +318,7 @@ impl Engine<'_> {
     /// Coolant that still waits for a first Z that does not come.
     pub(super) fn coolant_now(&mut self) {
         if let Some(code) = self.approach.take().filter(|code| !code.is_empty()) {
-            self.control.code(&code);
+            self.control.function(&code);
         }
     }
 

@@ -4,6 +4,7 @@ use apt_geometry::Vec3;
 
 use super::{
     Engine, Feed,
+    blocks::Shape,
     motion::AXES,
     turning::{Target, Turning, Way},
 };
@@ -167,8 +168,7 @@ impl Engine<'_> {
         self.check_travel(position);
         let (feed_code, feed) = self.turning_feed(turn, before, position);
         let words: Vec<Word> = words.into_iter().chain(feed).collect();
-        let machine = self.machine;
-        self.cut(&[], feed_code, &[&machine.codes.linear], &words);
+        self.cut(&[], feed_code, &Shape::Linear, &words);
         self.skipped = false;
         self.position = Some(position);
     }
@@ -325,8 +325,7 @@ impl Engine<'_> {
     pub(super) fn turn_now(&mut self) {
         let words = self.rotary_words();
         if words.iter().any(|word| self.control.changes(word.register, word.value)) {
-            let machine = self.machine;
-            self.control.motion(&[], &[&machine.codes.rapid], &words);
+            self.rapid_block(&[], &words);
         }
     }
 

@@ -3,10 +3,11 @@
 use super::{MachineDefinition, MachineError, MachineInfo};
 
 /// The definitions that come with the program.
-const BUNDLED: [&str; 7] = [
+const BUNDLED: [&str; 8] = [
     include_str!("../../machines/linuxcnc-mill3.toml"),
     include_str!("../../machines/fanuc-mill3.toml"),
     include_str!("../../machines/haas-mill3.toml"),
+    include_str!("../../machines/heidenhain-mill3.toml"),
     include_str!("../../machines/linuxcnc-mill5.toml"),
     include_str!("../../machines/fanuc-mill5.toml"),
     include_str!("../../machines/haas-mill5.toml"),
@@ -59,13 +60,17 @@ mod tests {
             assert_eq!(super::machine(&machine.id).unwrap(), machine);
         }
         let names: Vec<String> = machines().into_iter().map(|info| info.name).collect();
-        let three = ["linuxcnc-mill3", "fanuc-mill3", "haas-mill3"];
+        let three = ["linuxcnc-mill3", "fanuc-mill3", "haas-mill3", "heidenhain-mill3"];
         let five = ["linuxcnc-mill5", "fanuc-mill5", "haas-mill5", "sinumerik-mill5"];
         assert_eq!(names, [&three[..], &five].concat());
         // The names of MACHIN lead to one machine each.
-        let of_programs: Vec<String> =
-            ["LINCNC", "LinuxCNC", "fanuc", "HAAS"].map(|name| super::machine(name).unwrap().id).into();
-        assert_eq!(of_programs, ["linuxcnc-mill3", "linuxcnc-mill3", "fanuc-mill3", "haas-mill3"]);
+        let of_programs: Vec<String> = ["LINCNC", "LinuxCNC", "fanuc", "HAAS", "Heiden"]
+            .map(|name| super::machine(name).unwrap().id)
+            .into();
+        assert_eq!(
+            of_programs,
+            ["linuxcnc-mill3", "linuxcnc-mill3", "fanuc-mill3", "haas-mill3", "heidenhain-mill3"]
+        );
         assert_eq!(super::machine("x"), Err(MachineError::UnknownMachine { name: "x".to_owned() }));
     }
 

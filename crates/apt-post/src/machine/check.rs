@@ -1,9 +1,19 @@
 //! What a definition has to be besides well formed.
 
-use super::{ArcCenter, MachineDefinition, MachineError, RADIUS, SCHEMA};
+use super::{
+    ArcCenter, CENTERS, Coordinates, HELIX_ANGLE, MachineDefinition, MachineError, RADIUS, RISES, SCHEMA,
+    VECTOR_REGISTERS,
+};
+use crate::{
+    arc::plane_axes,
+    template::{Piece, pieces},
+};
+
+/// The registers of the linear axes by coordinate.
+const AXES: [&str; 3] = ["X", "Y", "Z"];
 
 /// Registers that every mill needs.
-const NEEDED: [&str; 10] = ["N", "G", "X", "Y", "Z", "I", "J", "K", "F", "S"];
+const NEEDED: [&str; 9] = ["N", "X", "Y", "Z", "I", "J", "K", "F", "S"];
 
 impl MachineDefinition {
     /// Whether everything that is named is there, and ranges are ranges.
@@ -28,6 +38,7 @@ impl MachineDefinition {
             }
         }
         self.validate_rotary()?;
+        self.validate_motion()?;
         let turns = self.rotary.iter().filter_map(|(name, axis)| Some((name, axis.limits_degrees?)));
         let turns = turns.map(|(name, limits)| (format!("rotary.{name}.limits_degrees"), limits));
         let axes = self.axes.iter().map(|(name, axis)| (format!("axes.{name}.limits_mm"), axis.limits_mm));
@@ -51,6 +62,39 @@ impl MachineDefinition {
         Ok(())
     }
 
+    /// Whether templates of motion tell all that a motion is.
+    fn validate_motion(&self) -> Result<(), MachineError> {
+        let t = &self.templates;
+        let rotary: Vec<&str> = match &self.kinematics {
+            None => Vec::new(),
+            Some(rules) if rules.coordinates == Coordinates::Vector => VECTOR_REGISTERS.to_vec(),
+            Some(rules) => rules.chain.iter().map(String::as_str).collect(),
+        };
+        let straight: Vec<&str> = AXES.into_iter().chain(rotary).collect();
+        names("templates.linear", &t.linear, "", &straight)?;
+        names("templates.rapid", &t.rapid, "", &straight)?;
+        for plane in &self.arc.planes {
+            let [u, v, across] = plane_axes(*plane);
+            let centers = match self.arc.center {
+                ArcCenter::Radius => vec![RADIUS],
+                ArcCenter::Incremental | ArcCenter::Absolute => vec![CENTERS[u], CENTERS[v]],
+            };
+            let flat: Vec<&str> = [AXES[u], AXES[v]].into_iter().chain(centers.iter().copied()).collect();
+            names("templates.arc", &t.arc, &t.arc_center, &flat)?;
+            if self.arc.helix && t.helix.is_empty() {
+                names("templates.arc", &t.arc, "", &[AXES[across]])?;
+            }
+            let turning: Vec<&str> = [HELIX_ANGLE, RISES[across]].into_iter().chain(centers).collect();
+            names("templates.helix", &t.helix, &t.arc_center, &turning)?;
+        }
+        match self.arc.helix_degrees {
+            Some(degrees) if !(degrees > 0.0 && degrees.is_finite()) => {
+                Err(MachineError::NotPositive { place: "arc.helix_degrees".to_owned() })
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn known(&self, place: &str, register: &str) -> Result<(), MachineError> {
         let computed = matches!(register, "ZR" | "ZI");
         if computed || self.registers.contains_key(register) {
@@ -68,6 +112,7 @@ impl MachineDefinition {
             ("trailer", &t.trailer),
             ("tool_change", &t.tool_change),
             ("home", &t.home),
+            ("dwell", &t.dwell),
             ("follow_on", &t.follow_on),
             ("follow_off", &t.follow_off),
         ];
@@ -80,15 +125,40 @@ impl MachineDefinition {
             ("first_xy", &t.first_xy),
             ("first_z", &t.first_z),
             ("spindle_on", &t.spindle_on),
-            ("dwell", &t.dwell),
+            ("spindle_speed", &t.spindle_speed),
+            ("function", &t.function),
+            ("linear", &t.linear),
+            ("rapid", &t.rapid),
+            ("arc", &t.arc),
+            ("arc_center", &t.arc_center),
+            ("helix", &t.helix),
             ("message", &t.message),
             ("spindle_orient", &t.spindle_orient),
         ];
         all.extend(single.map(|(name, text)| (format!("templates.{name}"), text.clone())));
         for (name, cycle) in &self.cycles {
-            let texts = [&cycle.pre, &cycle.on, &cycle.next].into_iter().flatten().chain(&cycle.each);
+            let texts = [&cycle.pre, &cycle.on, &cycle.next].into_iter().flatten();
+            let texts = texts.chain(&cycle.define).chain(&cycle.each);
             all.extend(texts.map(|text| (format!("cycles.{name}"), text.clone())));
         }
         all
+    }
+}
+
+/// Whether a template, or the one of the block before it, names all that it has to tell; one that is not there need not.
+fn names(place: &str, template: &str, before: &str, registers: &[&str]) -> Result<(), MachineError> {
+    if template.is_empty() {
+        return Ok(());
+    }
+    let named = |wanted: &str| {
+        let mut all = before.split_whitespace().chain(template.split_whitespace()).flat_map(pieces);
+        all.any(|piece| matches!(piece, Piece::Placeholder { name, .. } if name == wanted))
+    };
+    match registers.iter().find(|register| !named(register)) {
+        None => Ok(()),
+        Some(register) => {
+            let (place, register) = (place.to_owned(), (*register).to_owned());
+            Err(MachineError::TemplateLacks { place, register })
+        }
     }
 }

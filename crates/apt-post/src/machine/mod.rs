@@ -6,7 +6,7 @@ mod rotary;
 
 use std::collections::BTreeMap;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::format::{NumberFormat, Sign, Style};
 
@@ -49,6 +49,14 @@ pub enum MachineError {
     #[error("{place}: register {register} is not defined")]
     UnknownRegister {
         /// Where it is named.
+        place: String,
+        /// The register.
+        register: String,
+    },
+    /// A template of motion does not name a register without which it tells no motion.
+    #[error("{place} does not name {register}")]
+    TemplateLacks {
+        /// The template.
         place: String,
         /// The register.
         register: String,
@@ -321,6 +329,9 @@ pub struct Sequence {
     pub every: u32,
     /// Largest number; after it the start comes again.
     pub max: u32,
+    /// Whether every line has its number, remarks and the frame of the program too, and no statement changes that.
+    #[serde(default)]
+    pub every_line: bool,
 }
 
 /// Codes; what a control lacks is left out.
@@ -386,6 +397,10 @@ pub struct ArcRules {
     pub fit_points: bool,
     /// Fewest points of such a run, start included.
     pub fit_least_points: usize,
+    /// Most degrees of a helix in one block, for a control that is told its angle (template `helix`): turns that go on are
+    /// one helix.
+    #[serde(default)]
+    pub helix_degrees: Option<f64>,
 }
 
 /// How an arc's centre is given.
@@ -413,6 +428,10 @@ pub enum ArcPlane {
 
 /// Templates of blocks: `{X}` is a register under its modal rule, `{!X}` forces it, other names are texts, as
 /// `{work_offset}` in that of the first motion of a tool; a word whose placeholder has no value disappears.
+///
+/// `linear`, `rapid`, `arc` and `helix` are there for controls whose blocks of motion are more than codes and words in one order;
+/// without them they are that. Texts in them are `{compensation}`, the code in force, `{codes}`, what comes into force with the block, and `{turn}`,
+/// the code of the sense of an arc.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[expect(missing_docs, reason = "the names say it")]
@@ -426,9 +445,29 @@ pub struct Templates {
     pub first_xy: String,
     pub first_z: String,
     pub spindle_on: String,
-    pub dwell: String,
+    /// Told before `spindle_on` where the speed changes; empty where that tells it.
+    #[serde(default)]
+    pub spindle_speed: String,
+    /// One block, or a list of them.
+    #[serde(deserialize_with = "one_or_more")]
+    pub dwell: Vec<String>,
     pub message: String,
     pub home: Vec<String>,
+    /// A code of a function that no motion goes with, `{code}`.
+    #[serde(default)]
+    pub function: String,
+    #[serde(default)]
+    pub linear: String,
+    #[serde(default)]
+    pub rapid: String,
+    #[serde(default)]
+    pub arc: String,
+    /// The centre of an arc, before it where it is another one.
+    #[serde(default)]
+    pub arc_center: String,
+    /// By the angle `{PA}` and by how far the third axis goes, `{IZ}` in the plane XY.
+    #[serde(default)]
+    pub helix: String,
     /// The control is told to follow the tool end, and that it is not to any more.
     #[serde(default)]
     pub follow_on: Vec<String>,
@@ -442,13 +481,32 @@ pub struct Templates {
     pub dwell_in_milliseconds: bool,
 }
 
-/// How a cycle is written. `{L}` is how often it is made at a place, where that is more than once.
+/// One block or a list of them.
+fn one_or_more<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<String>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Blocks {
+        One(String),
+        More(Vec<String>),
+    }
+    Ok(match Blocks::deserialize(deserializer)? {
+        Blocks::One(block) => vec![block],
+        Blocks::More(blocks) => blocks,
+    })
+}
+
+/// How a cycle is written. `{L}` is how often it is made at a place, where that is more than once. `{ZT}` is the top of a hole, and from there count
+/// the clearance `{RC}`, the depth `{DP}` and the height `{RB}` to which the tool goes back; `{CB}` is how far it goes back to break a chip, and `{FQ}` the
+/// feed in a register of its own.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CycleTemplate {
     /// Block before the first hole.
     #[serde(default)]
     pub pre: Option<String>,
+    /// Blocks that define it, before the first hole and wherever a parameter changes, for a control that is told at every hole to make it.
+    #[serde(default)]
+    pub define: Vec<String>,
     /// Block at the first hole, and wherever a parameter changes.
     #[serde(default)]
     pub on: Option<String>,
@@ -476,6 +534,11 @@ pub struct Limits {
     pub tools: Option<[u32; 2]>,
 }
 
+/// The registers of the centre of an arc by coordinate.
+pub(crate) const CENTERS: [&str; 3] = ["I", "J", "K"];
+/// The register of the angle of a helix, and those of how far its axis goes by coordinate, all from where it starts.
+pub(crate) const HELIX_ANGLE: &str = "PA";
+pub(crate) const RISES: [&str; 3] = ["IX", "IY", "IZ"];
 /// The register of the radius of an arc, and of the plane to which a cycle goes back.
 pub(crate) const RADIUS: &str = "R";
 

@@ -244,7 +244,11 @@ impl Engine<'_> {
             return self.bad_value(arguments, "TIMES", times);
         }
         let writes = |text: &String| crate::template::register_names(text).iter().any(|name| name == REPEATS);
-        let canned = self.machine.cycles.get(name).filter(|template| template.each.is_empty());
+        let canned = self
+            .machine
+            .cycles
+            .get(name)
+            .filter(|template| template.each.is_empty() && template.define.is_empty());
         if canned.is_some_and(|template| !template.on.iter().all(writes) || !template.next.iter().all(writes))
         {
             self.not_used(arguments, "TIMES");

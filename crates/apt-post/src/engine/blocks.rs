@@ -1,0 +1,69 @@
+//! Blocks of motion: codes and words in the order of the machine, or by its templates.
+
+use super::Engine;
+use crate::control::{Values, Word};
+
+/// What a block of motion makes.
+pub(super) enum Shape<'c> {
+    /// A straight move at feed rate.
+    Linear,
+    /// An arc, by the codes of its plane and its sense.
+    Arc { plane: &'c str, turn: &'c str },
+    /// An arc with a third axis, by its angle.
+    Helix { turn: &'c str },
+}
+
+impl Engine<'_> {
+    /// A rapid block, with codes before its own.
+    pub(super) fn rapid_block(&mut self, before: &[String], words: &[Word]) {
+        let machine = self.machine;
+        if machine.templates.rapid.is_empty() {
+            self.control.motion(before, &[&machine.codes.rapid], words);
+        } else {
+            let values = self.motion_values(words, None);
+            self.control.motion_template(&machine.templates.rapid, &values);
+        }
+    }
+
+    /// A cutting block, with codes before its own; a new feed mode makes the control forget its feed rate.
+    pub(super) fn cut(
+        &mut self,
+        before: &[String],
+        feed_code: Option<String>,
+        shape: &Shape<'_>,
+        words: &[Word],
+    ) {
+        let machine = self.machine;
+        let mode = feed_code.filter(|code| self.feed_mode(code));
+        let (template, turn) = match shape {
+            Shape::Linear => (&machine.templates.linear, ""),
+            Shape::Arc { turn, .. } => (&machine.templates.arc, *turn),
+            Shape::Helix { turn } => (&machine.templates.helix, *turn),
+        };
+        if !template.is_empty() {
+            let values = self.motion_values(words, mode).text("turn", turn);
+            self.control.motion_template(template, &values);
+            return;
+        }
+        let before: Vec<String> = before.iter().cloned().chain(mode).collect();
+        match shape {
+            Shape::Arc { plane, turn } => self.control.motion(&before, &[plane, turn], words),
+            Shape::Linear | Shape::Helix { .. } => {
+                self.control.motion(&before, &[&machine.codes.linear], words)
+            }
+        };
+    }
+
+    /// What the template of a block of motion has to say.
+    fn motion_values(&self, words: &[Word], mode: Option<String>) -> Values {
+        let values = Values::default().words(words).text("compensation", self.compensation_code.clone());
+        values.text("codes", mode.unwrap_or_default())
+    }
+
+    /// The codes of a compensation that waits, which are in force from now on.
+    pub(super) fn compensation_codes(&mut self) -> Option<Vec<String>> {
+        let pending = self.compensation.take()?;
+        self.compensation_code = pending.words.join(" ");
+        Some(pending.words)
+    }
+}
