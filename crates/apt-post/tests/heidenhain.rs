@@ -443,6 +443,70 @@ fn a_cycle_that_the_control_lacks_is_made_of_moves() {
     );
 }
 
+const MILL5: &str = "heidenhain-mill5";
+const LEANING: &str = "UNITS/MM\nMULTAX\nLOADTL/1\nSPINDL/1000,CLW\nCOOLNT/ON\nFEDRAT/1000\nRAPID\nGOTO/40,20,60,0,0,1\n\
+                       GOTO/40,20,10,0,-.5,.8660254\nGOTO/60,20,10,.5,0,.8660254\nGOTO/60,40,10,.353553,.353553,.866025\nRAPID\n\
+                       GOTO/60,40,90,.353553,.353553,.866025\nFINI\n";
+
+#[test]
+fn a_tool_that_leans() {
+    check_with(
+        MILL5,
+        LEANING,
+        &[],
+        &expect![[r#"
+        0 BEGIN PGM 1 MM
+        1 TOOL CALL 1 Z S1000
+        2 L M3
+        3 L B+0 C-90 R0 FMAX
+        4 L M128
+        5 L M8
+        6 L X+40 Y+20 Z+60 R0 FMAX
+        7 L Z+10 B+30 R0 F1000
+        8 L X+42.234 B+27.177 C-82.33 R0
+        9 L X+44.354 B+24.958 C-73.695 R0
+        10 L X+46.424 B+23.35 C-63.973 R0
+        11 L X+48.494 B+22.415 C-53.202 R0
+        12 L X+50.574 B+22.238 C-41.857 R0
+        13 L X+52.655 B+22.844 C-30.717 R0
+        14 L X+54.718 B+24.162 C-20.509 R0
+        15 L X+56.81 B+26.113 C-11.394 R0
+        16 L X+58.405 B+27.939 C-5.333 R0
+        17 L X+60 B+30 C+0 R0
+        18 L Y+24.438 B+28.685 C+9.633 R0
+        19 L Y+28.875 B+28.101 C+19.865 R0
+        20 L Y+33.338 B+28.296 C+30.286 R0
+        21 L Y+36.669 B+28.947 C+37.84 R0
+        22 L Y+40 B+30 C+45 R0
+        23 L Z+90 R0 FMAX
+        24 L M129
+        25 L M9
+        26 L M5
+        27 L Z-5 R0 FMAX M91
+        28 L B+0 C+0 R0 FMAX
+        29 L M30
+        30 END PGM 1 MM
+    "#]],
+    );
+}
+
+/// An upright tool is posted as on the machine with three axes, once the others stand at 0.
+#[test]
+fn an_upright_tool_is_nothing_new() {
+    let text = format!(
+        "{HEAD}RAPID\nGOTO/0,0,10\nFEDRAT/100\nGOTO/0,0,0\nMOVARC/5,0,0,0,0,1,5,ANGLE,180\nGOTO/10,0,0\nRAPID\nGOTO/10,0,10\n\
+         CYCLE/DRILL,5,MMPM,100,2\nGOTO/10,0,0\nGOTO/20,0,0\nCYCLE/OFF\nGOHOME\nFINI\n"
+    );
+    let bare = |name: &str| -> Vec<String> {
+        let tape = tape_for(name, &text);
+        assert_eq!(tape.findings, vec![]);
+        let text = tape.text();
+        let blocks = text.lines().map(|line| line.split_once(' ').unwrap().1.to_owned());
+        blocks.filter(|block| !block.contains('B') || block.contains("PGM")).collect()
+    };
+    assert_eq!(bare(MILL), bare(MILL5));
+}
+
 #[test]
 fn templates_that_tell_no_motion_are_refused() {
     let text = definition_file(MILL).unwrap();

@@ -3,7 +3,7 @@
 use super::{MachineDefinition, MachineError, MachineInfo};
 
 /// The definitions that come with the program.
-const BUNDLED: [&str; 8] = [
+const BUNDLED: [&str; 9] = [
     include_str!("../../machines/linuxcnc-mill3.toml"),
     include_str!("../../machines/fanuc-mill3.toml"),
     include_str!("../../machines/haas-mill3.toml"),
@@ -12,6 +12,7 @@ const BUNDLED: [&str; 8] = [
     include_str!("../../machines/fanuc-mill5.toml"),
     include_str!("../../machines/haas-mill5.toml"),
     include_str!("../../machines/sinumerik-mill5.toml"),
+    include_str!("../../machines/heidenhain-mill5.toml"),
 ];
 
 /// The bundled machines, in a fixed order.
@@ -61,7 +62,7 @@ mod tests {
         }
         let names: Vec<String> = machines().into_iter().map(|info| info.name).collect();
         let three = ["linuxcnc-mill3", "fanuc-mill3", "haas-mill3", "heidenhain-mill3"];
-        let five = ["linuxcnc-mill5", "fanuc-mill5", "haas-mill5", "sinumerik-mill5"];
+        let five = ["linuxcnc-mill5", "fanuc-mill5", "haas-mill5", "sinumerik-mill5", "heidenhain-mill5"];
         assert_eq!(names, [&three[..], &five].concat());
         // The names of MACHIN lead to one machine each.
         let of_programs: Vec<String> = ["LINCNC", "LinuxCNC", "fanuc", "HAAS", "Heiden"]

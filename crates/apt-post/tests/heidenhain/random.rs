@@ -3,17 +3,21 @@
 use std::f64::consts::TAU;
 
 use apt_cldata::text::read_text;
+use apt_geometry::Vec3;
 use apt_post::{PostOptions, machine, post};
 use proptest::prelude::*;
 
 use super::{
-    MILL,
-    reader::{Step, read},
+    MILL, MILL5,
+    reader::{Place, Step, read},
 };
 
 /// How far the last decimals may take a place on an arc, of its ends, its centre and its angle.
 const ROUNDED: f64 = 3e-3;
 const LAST_DECIMAL: f64 = 1e-3;
+/// How far a tool may lean out of the plane in which it turns, and by how much of a unit angles with three decimals may turn it.
+const ASIDE_DEGREES: f64 = 0.1 + 2e-3;
+const TURNED: f64 = 3e-5;
 /// A way of the program that is told to go nowhere.
 const STAYS: f64 = 6e-4;
 
@@ -176,6 +180,60 @@ fn follow(steps: &[Step], ways: &[Way]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// A position of a tool that may lean.
+#[derive(Debug, Clone, Copy)]
+struct Position {
+    rapid: bool,
+    tip: Vec3,
+    axis: Vec3,
+}
+
+fn any_position() -> impl Strategy<Value = Position> {
+    let step = || -2_000_000_i32..2_000_000;
+    (step(), step(), step(), 0.0..TAU, prop_oneof![Just(0.0), 1.0..60.0_f64], any::<bool>()).prop_map(
+        |(x, y, z, round, lean, rapid)| {
+            let lean = lean.to_radians();
+            let axis = Vec3::new(lean.sin() * round.cos(), lean.sin() * round.sin(), lean.cos());
+            Position { rapid, tip: Vec3::new(f64::from(x), f64::from(y), f64::from(z)) / 1e4, axis }
+        },
+    )
+}
+
+/// The tool end of a place of heidenhain-mill5 on the part, and the direction of the tool: tilted by B, then turned by C.
+fn on_part([x, y, z, b, c]: Place) -> (Vec3, Vec3) {
+    let (b, c) = (b.to_radians(), c.to_radians());
+    (Vec3::new(x, y, z), Vec3::new(b.sin() * c.cos(), b.sin() * c.sin(), b.cos()))
+}
+
+/// Follows the steps of a tape along positions: each is come to, and between two cuts the tool end stays on its straight way and
+/// the tool by its great circle.
+fn follow_leaning(steps: &[Step], positions: &[Position]) -> Result<(), TestCaseError> {
+    let mut at = 0;
+    for step in steps {
+        let (tip, axis) = on_part(step.end);
+        if let (Some(goal), Some(_)) = (positions.get(at), step.feed) {
+            prop_assert!(!goal.rapid && at > 0, "{:?} {:?}", step, goal);
+            let start = positions[at - 1];
+            let way = goal.tip - start.tip;
+            let along = ((tip - start.tip).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+            let off = (tip - start.tip - way * along).norm();
+            prop_assert!(off <= ROUNDED, "{} {:?} {:?}", off, step, goal);
+            let across = start.axis.cross(&goal.axis);
+            if across.norm() > 1e-6 {
+                let aside = axis.dot(&across.normalize()).asin().to_degrees();
+                prop_assert!(aside.abs() <= ASIDE_DEGREES, "{} {:?} {:?}", aside, step, goal);
+            }
+        }
+        let is_there =
+            |goal: &Position| (goal.tip - tip).norm() <= ROUNDED && (goal.axis - axis).norm() <= TURNED;
+        while positions.get(at).is_some_and(is_there) {
+            at += 1;
+        }
+    }
+    prop_assert_eq!(at, positions.len());
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..Default::default() })]
 
@@ -187,5 +245,25 @@ proptest! {
         let tape = post(&records, &machine(MILL).unwrap(), &PostOptions::default());
         prop_assert!(tape.is_ok(), "{:?}", tape.findings);
         follow(&read(&tape.text()), &ways).map_err(|error| TestCaseError::fail(format!("{error}\n{text}\n{}", tape.text())))?;
+    }
+
+    #[test]
+    fn a_tape_leads_a_tool_that_leans_along_its_program(positions in prop::collection::vec(any_position(), 1..8)) {
+        let mut positions = positions;
+        positions[0].rapid = true;
+        let mut text =
+            "UNITS/MM\nMULTAX\nLOADTL/1\nSPINDL/1000,CLW\nFEDRAT/500\nRAPID\nGOTO/0,0,300,0,0,1\n".to_owned();
+        for Position { rapid, tip, axis } in &positions {
+            if *rapid {
+                text += "RAPID\n";
+            }
+            text += &format!("GOTO/{:.4},{:.4},{:.4},{:.9},{:.9},{:.9}\n", tip.x, tip.y, tip.z, axis.x, axis.y, axis.z);
+        }
+        let (records, errors) = read_text(&(text.clone() + "FINI\n"));
+        prop_assert!(errors.is_empty(), "{:?}", errors);
+        let tape = post(&records, &machine(MILL5).unwrap(), &PostOptions::default());
+        prop_assert!(tape.is_ok(), "{:?}", tape.findings);
+        follow_leaning(&read(&tape.text()), &positions)
+            .map_err(|error| TestCaseError::fail(format!("{error}\n{text}\n{}", tape.text())))?;
     }
 }
