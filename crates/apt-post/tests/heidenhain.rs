@@ -413,6 +413,29 @@ fn three_holes_of_each_cycle() {
 }
 
 #[test]
+fn feeds_and_threads_in_inches() {
+    let text = "UNITS/INCHES\nLOADTL/1\nSPINDL/600,CLW\nRAPID\nGOTO/1,3,2\nCYCLE/DRILL,DEPTH,.4,IPM,5.5,CLEAR,.2\nGOTO/1,3,0\n\
+                CYCLE/TAP,DEPTH,.4,TPI,20,CLEAR,.2\nGOTO/1,3,0\nCYCLE/OFF\nFEDRAT/.004,IPR\nGOTO/1,3,1\nFEDRAT/.5\nGOTO/2,3,1\nFINI\n";
+    check(text, &expect![[r#"
+        0 BEGIN PGM 1 INCH
+        1 TOOL CALL 1 Z S600
+        2 L M3
+        3 L X+1 Y+3 R0 FMAX
+        4 L Z+2 R0 FMAX
+        5 CYCL DEF 200 DRILLING Q200=0.2 Q201=-0.4 Q206=55 Q202=0.4 Q210=0 Q203=+0 Q204=2 Q211=0
+        6 L X+1 Y+3 R0 FMAX M99
+        7 CYCL DEF 207 RIGID TAPPING Q200=0.2 Q201=-0.4 Q239=+0.05 Q203=+0 Q204=2
+        8 L X+1 Y+3 R0 FMAX M99
+        9 L Z+1 R0 FU0.004
+        10 L X+2 R0 F5
+        11 L M5
+        12 L Z-5 R0 FMAX M91
+        13 L M30
+        14 END PGM 1 INCH
+    "#]]);
+}
+
+#[test]
 fn a_cycle_that_the_control_lacks_is_made_of_moves() {
     let text = format!(
         "{HEAD}RAPID\nGOTO/10,10,50\nCYCLE/SHIFT,DEPTH,10,MMPM,180,CLEAR,3,OFFSET,.2\nGOTO/10,10,0\nCYCLE/OFF\nFINI\n"

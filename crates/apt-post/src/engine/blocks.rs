@@ -9,8 +9,6 @@ pub(super) enum Shape<'c> {
     Linear,
     /// An arc, by the codes of its plane and its sense.
     Arc { plane: &'c str, turn: &'c str },
-    /// An arc with a third axis, by its angle.
-    Helix { turn: &'c str },
 }
 
 impl Engine<'_> {
@@ -34,24 +32,26 @@ impl Engine<'_> {
         words: &[Word],
     ) {
         let machine = self.machine;
-        let mode = feed_code.filter(|code| self.feed_mode(code));
         let (template, turn) = match shape {
             Shape::Linear => (&machine.templates.linear, ""),
             Shape::Arc { turn, .. } => (&machine.templates.arc, *turn),
-            Shape::Helix { turn } => (&machine.templates.helix, *turn),
         };
         if !template.is_empty() {
-            let values = self.motion_values(words, mode).text("turn", turn);
-            self.control.motion_template(template, &values);
-            return;
+            return self.cut_by(template, feed_code, turn, words);
         }
+        let mode = feed_code.filter(|code| self.feed_mode(code));
         let before: Vec<String> = before.iter().cloned().chain(mode).collect();
         match shape {
+            Shape::Linear => self.control.motion(&before, &[&machine.codes.linear], words),
             Shape::Arc { plane, turn } => self.control.motion(&before, &[plane, turn], words),
-            Shape::Linear | Shape::Helix { .. } => {
-                self.control.motion(&before, &[&machine.codes.linear], words)
-            }
         };
+    }
+
+    /// A cutting block by a template, with the code of the sense of an arc.
+    pub(super) fn cut_by(&mut self, template: &str, feed_code: Option<String>, turn: &str, words: &[Word]) {
+        let mode = feed_code.filter(|code| self.feed_mode(code));
+        let values = self.motion_values(words, mode).text("turn", turn);
+        self.control.motion_template(template, &values);
     }
 
     /// What the template of a block of motion has to say.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use apt_geometry::Vec3;
 
-use super::{Engine, blocks::Shape, motion::AXES};
+use super::{Engine, motion::AXES};
 use crate::{
     arc::{self, Arc},
     control::Word,
@@ -123,7 +123,8 @@ impl Engine<'_> {
         self.work_offset_now();
         self.center_now(&words);
         let turn = self.turn_code(&helix.arc);
-        self.cut(&[], feed_code, &Shape::Helix { turn }, &words);
+        let machine = self.machine;
+        self.cut_by(&machine.templates.helix, feed_code, turn, &words);
         self.control.hold(AXES[across], helix.end[across]);
         if helix.partial {
             // Where the angle leads is the end of the arc but for the last decimals.
