@@ -141,28 +141,60 @@ fn turns_of_a_helix_are_one_block() {
     );
 }
 
+/// Turns that rise otherwise are another helix, and so are more of them than the control takes in one.
+#[test]
+fn turns_that_do_not_go_on_are_blocks_of_their_own() {
+    let turn = |from: f64, to: f64| format!("CIRCLE/0,0,{from},0,0,1,5\nGOTO/5,0,{to}\n");
+    let helices = |turns: &str| -> Vec<String> {
+        let text = format!("{HEAD}RAPID\nGOTO/5,0,5\nFEDRAT/300\nGOTO/5,0,0\n{turns}FINI\n");
+        let tape = tape_for(MILL, &text).text();
+        let blocks = tape.lines().filter(|line| line.contains(" CP "));
+        blocks.map(|line| line.split_once(' ').unwrap().1.to_owned()).collect()
+    };
+    let uneven = turn(0.0, 1.0) + &turn(1.0, 2.0) + &turn(2.0, 4.0);
+    assert_eq!(helices(&uneven), ["CP IPA+720 IZ+2 DR+", "CP IPA+360 IZ+2 DR+"]);
+    let many: String = (0..20).map(|at| turn(f64::from(at), f64::from(at) + 1.0)).collect();
+    assert_eq!(helices(&many), ["CP IPA+5400 IZ+15 DR+", "CP IPA+1800 IZ+5 DR+"]);
+}
+
+/// An inverse time is that of one arc.
+#[test]
+fn turns_with_a_time_of_their_own_are_not_one_block() {
+    let text = definition_file(MILL).unwrap();
+    let inverse = "FI = { address = \"FI\", style = \"plain\", left = 5, right = 3, modal = true }\nS = {";
+    let text = text.replacen("S = {", inverse, 1).replace("{F} {FR}", "{F} {FR} {FI}");
+    let text = text.replace("feed_per_revolution = \"\"", "feed_per_revolution = \"\"\nfeed_inverse = \"\"");
+    let mill = MachineDefinition::from_toml(&text).unwrap();
+    let program = format!(
+        "{HEAD}RAPID\nGOTO/5,0,5\nFEDRAT/4,INVERS\nGOTO/5,0,0\nCIRCLE/0,0,0,0,0,1,5\nGOTO/5,0,1\nCIRCLE/0,0,1,0,0,1,5\nGOTO/5,0,2\nFINI\n"
+    );
+    let (records, _) = read_text(&program);
+    let tape = post(&records, &mill, &PostOptions::default()).text();
+    assert_eq!(tape.matches("CP IPA+360 IZ+1 DR+ FI4").count(), 2, "{tape}");
+}
+
 #[test]
 fn a_part_of_a_turn_is_followed_by_whole_places() {
     let text = format!(
-        "{HEAD}RAPID\nGOTO/5,0,5\nFEDRAT/300\nGOTO/5,0,-2\nMOVARC/0,0,-2,0,0,-1,5,ANGLE,90\nGOTO/0,-5,-3\nGOTO/0,-10,-3\nFINI\n"
+        "{HEAD}RAPID\nGOTO/5,0,5\nFEDRAT/300\nGOTO/5,0,-2\nMOVARC/5,-5,-2,0,0,-1,5,ANGLE,180\nGOTO/5,-10,-3\nGOTO/5,-20,-3\nFINI\n"
     );
     check(
         &text,
         &expect![[r#"
-        0 BEGIN PGM 1 MM
-        1 TOOL CALL 1 Z S1000
-        2 L M3
-        3 L X+5 Y+0 R0 FMAX
-        4 L Z+5 R0 FMAX
-        5 L Z-2 R0 F300
-        6 CC X+0 Y+0
-        7 CP IPA-90 IZ-1 DR-
-        8 L X+0 Y-10 R0
-        9 L M5
-        10 L Z-5 R0 FMAX M91
-        11 L M30
-        12 END PGM 1 MM
-    "#]],
+            0 BEGIN PGM 1 MM
+            1 TOOL CALL 1 Z S1000
+            2 L M3
+            3 L X+5 Y+0 R0 FMAX
+            4 L Z+5 R0 FMAX
+            5 L Z-2 R0 F300
+            6 CC X+5 Y-5
+            7 CP IPA-180 IZ-1 DR-
+            8 L X+5 Y-20 R0
+            9 L M5
+            10 L Z-5 R0 FMAX M91
+            11 L M30
+            12 END PGM 1 MM
+        "#]],
     );
 }
 
@@ -412,11 +444,23 @@ fn three_holes_of_each_cycle() {
     );
 }
 
+/// A cycle is defined again where a parameter changes, and not for another hole at the same place.
+#[test]
+fn a_hole_that_is_made_again_needs_no_definition() {
+    let text = format!(
+        "{HEAD}RAPID\nGOTO/10,10,50\nCYCLE/DRILL,DEPTH,5,MMPM,180,CLEAR,3\nGOTO/10,10,0\nGOTO/10,10,0\nCYCLE/OFF\nFINI\n"
+    );
+    let tape = tape_for(MILL, &text).text();
+    assert_eq!((tape.matches("CYCL DEF").count(), tape.matches("L X+10 Y+10 R0 FMAX M99").count()), (1, 2));
+}
+
 #[test]
 fn feeds_and_threads_in_inches() {
     let text = "UNITS/INCHES\nLOADTL/1\nSPINDL/600,CLW\nRAPID\nGOTO/1,3,2\nCYCLE/DRILL,DEPTH,.4,IPM,5.5,CLEAR,.2\nGOTO/1,3,0\n\
                 CYCLE/TAP,DEPTH,.4,TPI,20,CLEAR,.2\nGOTO/1,3,0\nCYCLE/OFF\nFEDRAT/.004,IPR\nGOTO/1,3,1\nFEDRAT/.5\nGOTO/2,3,1\nFINI\n";
-    check(text, &expect![[r#"
+    check(
+        text,
+        &expect![[r#"
         0 BEGIN PGM 1 INCH
         1 TOOL CALL 1 Z S600
         2 L M3
@@ -432,7 +476,8 @@ fn feeds_and_threads_in_inches() {
         12 L Z-5 R0 FMAX M91
         13 L M30
         14 END PGM 1 INCH
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]

@@ -17,6 +17,15 @@ use crate::{
 const PLANE_TOLERANCE: f64 = 1e-7;
 
 impl<'a> Engine<'a> {
+    pub(super) fn plane_code(&self, plane: ArcPlane) -> &'a str {
+        let codes = &self.machine.codes;
+        match plane {
+            ArcPlane::Xy => &codes.plane_xy,
+            ArcPlane::Zx => &codes.plane_zx,
+            ArcPlane::Yz => &codes.plane_yz,
+        }
+    }
+
     /// The code of the sense of an arc.
     pub(super) fn turn_code(&self, arc: &Arc) -> &'a str {
         let codes = &self.machine.codes;
@@ -112,29 +121,14 @@ impl Engine<'_> {
         self.check_travel(end);
         self.check_cutting();
         let [u, v, w] = arc::plane_axes(plane);
-        let machine = self.machine;
-        let codes = &machine.codes;
-        let plane_code = match plane {
-            ArcPlane::Xy => &codes.plane_xy,
-            ArcPlane::Zx => &codes.plane_zx,
-            ArcPlane::Yz => &codes.plane_yz,
-        };
-        let turn = self.turn_code(arc);
+        let (plane_code, turn) = (self.plane_code(plane), self.turn_code(arc));
         let forced = |register, value| Word { register, value, force: true };
         let mut words = vec![
             forced(AXES[u], end[u]),
             forced(AXES[v], end[v]),
             Word { register: AXES[w], value: end[w], force: false },
         ];
-        match machine.arc.center {
-            ArcCenter::Incremental => {
-                words.extend([u, v].map(|axis| forced(CENTERS[axis], arc.center[axis] - start[axis])));
-            }
-            ArcCenter::Absolute => {
-                words.extend([u, v].map(|axis| forced(CENTERS[axis], arc.center[axis])));
-            }
-            ArcCenter::Radius => words.push(forced(RADIUS, radius)),
-        }
+        words.extend(self.center_words((arc, radius), &start, plane));
         let sweep = arc.sweep(&start, &end, plane);
         let length = (sweep * radius).hypot(end[w] - start[w]);
         let (feed_code, mut feed) = self.feed_words(length);
@@ -146,6 +140,23 @@ impl Engine<'_> {
         self.center_now(&words);
         self.cut(&[], feed_code, &Shape::Arc { plane: plane_code, turn }, &words);
         self.position = Some(end);
+    }
+
+    /// The words of the centre of an arc with a radius, or of that.
+    pub(super) fn center_words(
+        &self,
+        (arc, radius): (&Arc, f64),
+        start: &Vec3,
+        plane: ArcPlane,
+    ) -> Vec<Word> {
+        let [u, v, _] = arc::plane_axes(plane);
+        let forced = |register, value| Word { register, value, force: true };
+        let from = match self.machine.arc.center {
+            ArcCenter::Incremental => *start,
+            ArcCenter::Absolute => Vec3::zeros(),
+            ArcCenter::Radius => return vec![forced(RADIUS, radius)],
+        };
+        [u, v].map(|axis| forced(CENTERS[axis], arc.center[axis] - from[axis])).into()
     }
 
     /// Tells a control the centre among the words of an arc where it takes it in a block of its own, and has another one.

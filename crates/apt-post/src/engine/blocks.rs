@@ -18,7 +18,7 @@ impl Engine<'_> {
         if machine.templates.rapid.is_empty() {
             self.control.motion(before, &[&machine.codes.rapid], words);
         } else {
-            let values = self.motion_values(words, None);
+            let values = self.motion_values(words, String::new());
             self.control.motion_template(&machine.templates.rapid, &values);
         }
     }
@@ -32,12 +32,12 @@ impl Engine<'_> {
         words: &[Word],
     ) {
         let machine = self.machine;
-        let (template, turn) = match shape {
-            Shape::Linear => (&machine.templates.linear, ""),
-            Shape::Arc { turn, .. } => (&machine.templates.arc, *turn),
+        let (template, codes) = match shape {
+            Shape::Linear => (&machine.templates.linear, ("", "")),
+            Shape::Arc { plane, turn } => (&machine.templates.arc, (*plane, *turn)),
         };
         if !template.is_empty() {
-            return self.cut_by(template, feed_code, turn, words);
+            return self.cut_by(template, feed_code, codes, words);
         }
         let mode = feed_code.filter(|code| self.feed_mode(code));
         let before: Vec<String> = before.iter().cloned().chain(mode).collect();
@@ -47,17 +47,25 @@ impl Engine<'_> {
         };
     }
 
-    /// A cutting block by a template, with the code of the sense of an arc.
-    pub(super) fn cut_by(&mut self, template: &str, feed_code: Option<String>, turn: &str, words: &[Word]) {
+    /// A cutting block by a template, with the codes of the plane and the sense of an arc.
+    pub(super) fn cut_by(
+        &mut self,
+        template: &str,
+        feed_code: Option<String>,
+        (plane, turn): (&str, &str),
+        words: &[Word],
+    ) {
         let mode = feed_code.filter(|code| self.feed_mode(code));
-        let values = self.motion_values(words, mode).text("turn", turn);
+        let plane = self.control.set_mode(plane).then(|| plane.to_owned());
+        let codes: Vec<String> = mode.into_iter().chain(plane).collect();
+        let values = self.motion_values(words, codes.join(" ")).text("turn", turn);
         self.control.motion_template(template, &values);
     }
 
     /// What the template of a block of motion has to say.
-    fn motion_values(&self, words: &[Word], mode: Option<String>) -> Values {
+    fn motion_values(&self, words: &[Word], codes: String) -> Values {
         let values = Values::default().words(words).text("compensation", self.compensation_code.clone());
-        values.text("codes", mode.unwrap_or_default())
+        values.text("codes", codes)
     }
 
     /// The codes of a compensation that waits, which are in force from now on.

@@ -1,7 +1,5 @@
 //! Helices that a control is told by their angle: turns that go on are one block.
 
-use std::f64::consts::TAU;
-
 use apt_geometry::Vec3;
 
 use super::{Engine, motion::AXES};
@@ -83,17 +81,18 @@ impl Engine<'_> {
             && first.arc.counterclockwise == fitted.counterclockwise
             && is_same(u)
             && is_same(v);
-        let most = self.machine.arc.helix_degrees.map_or(0.0, f64::to_radians);
-        // About the centre of the first to where the second ends: what the last decimals are off does not add up.
+        // About the centre of the first, from place to place: what the last decimals are off does not add up.
         let about = Arc { center: first.arc.center, ..*fitted };
         let sweep = first.sweep + about.sweep(&first.end, &end, plane);
         let partial = first.partial || !fitted.full_turn;
-        let sweep = if partial { first.whole_angle(&end, sweep) } else { sweep };
         // The time of the program is that of one arc.
         let timed = self.feed.is_some_and(|feed| feed.mode == FeedMode::Inverse);
         let rise = (end[across] - first.start[across]) / sweep.abs();
         let even = (first.rises[0]..=first.rises[1]).contains(&rise);
-        if !alike || !even || timed || sweep.abs() > most {
+        // As the control reads it: fifteen turns are no more than fifteen.
+        let degrees = self.control.rounded(HELIX_ANGLE, sweep.to_degrees().abs());
+        let fits = self.machine.arc.helix_degrees.is_some_and(|most| degrees <= most);
+        if !alike || !even || timed || !fits {
             return None;
         }
         let joined = Helix { end, sweep, partial, ..*first };
@@ -117,14 +116,14 @@ impl Engine<'_> {
         let rise = helix.end[across] - helix.start[across];
         let radius = helix.arc.radius(&helix.start, helix.plane);
         let (feed_code, feed) = self.feed_words((helix.sweep * radius).hypot(rise));
-        let mut words: Vec<Word> = [u, v].map(|axis| forced(CENTERS[axis], helix.arc.center[axis])).into();
+        let mut words = self.center_words((&helix.arc, radius), &helix.start, helix.plane);
         words.extend([forced(HELIX_ANGLE, helix.sweep.to_degrees()), forced(RISES[across], rise)]);
         words.extend(feed);
         self.work_offset_now();
         self.center_now(&words);
-        let turn = self.turn_code(&helix.arc);
+        let codes = (self.plane_code(helix.plane), self.turn_code(&helix.arc));
         let machine = self.machine;
-        self.cut_by(&machine.templates.helix, feed_code, turn, &words);
+        self.cut_by(&machine.templates.helix, feed_code, codes, &words);
         self.control.hold(AXES[across], helix.end[across]);
         if helix.partial {
             // Where the angle leads is the end of the arc but for the last decimals.
@@ -142,14 +141,6 @@ impl Engine<'_> {
 }
 
 impl Helix {
-    /// The angle to a place, next to another angle.
-    fn whole_angle(&self, place: &Vec3, near: f64) -> f64 {
-        let [u, v, _] = arc::plane_axes(self.plane);
-        let (from, to) = (self.start - self.arc.center, place - self.arc.center);
-        let angle = (from[u] * to[v] - from[v] * to[u]).atan2(from[u] * to[u] + from[v] * to[v]);
-        angle + TAU * ((near - angle) / TAU).round()
-    }
-
     /// Where the control comes to.
     fn led_to(&self) -> Vec3 {
         let [u, v, across] = arc::plane_axes(self.plane);

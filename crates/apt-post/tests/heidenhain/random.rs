@@ -180,6 +180,23 @@ fn follow(steps: &[Step], ways: &[Way]) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// Where the angles of many helices lead is off the places of the program by what one of them is.
+#[test]
+fn the_last_decimals_of_many_helices_do_not_add_up() {
+    let helix = |at: u32| Move::Arc {
+        toward: f64::from(at) * 0.7,
+        radius: 7.0 + f64::from(at % 5),
+        degrees: if at % 3 == 0 { -100.0 } else { 130.0 },
+        rise: 500,
+        times: 1,
+    };
+    let (text, ways) = program(&(0..300).map(helix).collect::<Vec<Move>>());
+    let (records, _) = read_text(&text);
+    let tape = post(&records, &machine(MILL).unwrap(), &PostOptions::default());
+    assert_eq!(tape.text().matches(" CP ").count(), 300);
+    follow(&read(&tape.text()), &ways).unwrap();
+}
+
 /// A position of a tool that may lean.
 #[derive(Debug, Clone, Copy)]
 struct Position {

@@ -5,6 +5,8 @@ use std::f64::consts::{PI, TAU};
 
 /// How far the ends of an arc may be at other distances from its centre than each other: controls take three times as much, millimetres.
 const RADII: f64 = 5e-3;
+/// What computing takes from a place; one that is farther from another is another one.
+const SAME: f64 = 1e-9;
 
 /// Where the axes stand: X, Y, Z, and B, C in degrees.
 pub(crate) type Place = [f64; 5];
@@ -99,7 +101,7 @@ impl Reader {
                 assert!((radii[0] - radii[1]).abs() < RADII, "{block}: {radii:?}");
                 let turned = (end_y - y).atan2(end_x - x) - (start_y - y).atan2(start_x - x);
                 // From a place to itself is once round.
-                let turned = if (end_x - start_x).hypot(end_y - start_y) < RADII { 0.0 } else { turned };
+                let turned = if (end_x - start_x).hypot(end_y - start_y) < SAME { 0.0 } else { turned };
                 let sweep = match (words.contains(&"DR+"), turned.rem_euclid(TAU)) {
                     (true, 0.0) => TAU,
                     (false, 0.0) => -TAU,
