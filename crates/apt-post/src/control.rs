@@ -332,8 +332,11 @@ impl<'a> Control<'a> {
         }
     }
 
-    /// A block of one code.
+    /// A block of one code; none where the control has no word for it.
     pub(crate) fn code(&mut self, code: &str) {
+        if code.is_empty() {
+            return;
+        }
         for word in code.split_whitespace() {
             self.set_mode(word);
         }

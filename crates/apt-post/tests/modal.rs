@@ -1,7 +1,9 @@
 //! What the control holds from block to block: feed modes and planes, cycles and the height that they go back to.
 
 use apt_cldata::text::read_text;
-use apt_post::{PostFindingKind, PostOptions, Severity, Tape, machine, post};
+use apt_post::{
+    MachineDefinition, PostFindingKind, PostOptions, Severity, Tape, definition_file, machine, post,
+};
 
 /// Statements that stand before those under test.
 const BEFORE: &str = "UNITS/MM\nLOADTL/1\nSPINDL/1000,CLW\n";
@@ -52,6 +54,24 @@ fn feeds_per_revolution_and_inverse_times_keep_their_digits() {
         }
         assert!(blocks[at(&blocks, "G94 Y0.")].contains(" F"), "{name}: {blocks:#?}");
     }
+}
+
+#[test]
+fn a_code_that_is_empty_is_not_written() {
+    let text = definition_file("fanuc-mill3").unwrap_or_else(|error| panic!("{error}"));
+    let text = text
+        .replace("coolant_off = \"M9\"", "coolant_off = \"\"")
+        .replace("plane_xy = \"G17\"", "plane_xy = \"\"");
+    let machine = MachineDefinition::from_toml(&text).unwrap_or_else(|error| panic!("{error}"));
+    let program = format!(
+        "{BEFORE}RAPID\nGOTO/0,0,5\nCOOLNT/ON\nCYCLE/DRILL,DEPTH,5,RAPTO,3,MMPM,100\nGOTO/1,0,0\nCYCLE/OFF\nCOOLNT/OFF\nFINI\n"
+    );
+    let tape = post(&read_text(&program).0, &machine, &PostOptions::default());
+    assert!(
+        tape.text().lines().all(|line| line.len() > "N100 ".len() || line == "%" || line == "O1"),
+        "{}",
+        tape.text()
+    );
 }
 
 #[test]

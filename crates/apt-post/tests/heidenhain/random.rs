@@ -186,7 +186,7 @@ fn the_last_decimals_of_many_helices_do_not_add_up() {
     let helix = |at: u32| Move::Arc {
         toward: f64::from(at) * 0.7,
         radius: 7.0 + f64::from(at % 5),
-        degrees: if at % 3 == 0 { -100.0 } else { 130.0 },
+        degrees: if at.is_multiple_of(3) { -100.0 } else { 130.0 },
         rise: 500,
         times: 1,
     };
