@@ -15,6 +15,8 @@ use crate::{
 
 /// What is written for a character of a remark that the control lacks.
 pub(crate) const REPLACEMENT: char = '?';
+/// What stands before a line that goes on with the block of the one before it.
+const CONTINUED: &str = "    ";
 /// The registers of a feed per minute, per revolution, and of an inverse time.
 pub(crate) const FEEDS: [&str; 3] = ["F", "FR", "FI"];
 
@@ -96,6 +98,8 @@ pub(crate) struct Control<'a> {
     /// Level of the optional blocks that are being made.
     pub(crate) skip: Option<u32>,
     pub(crate) numbering: Numbering,
+    /// Whether the block goes on on the next line.
+    goes_on: bool,
 }
 
 /// Sequence numbering in force.
@@ -127,6 +131,7 @@ impl<'a> Control<'a> {
                 every: sequence.every.max(1),
                 count: 0,
             },
+            goes_on: false,
         }
     }
 
@@ -366,36 +371,63 @@ impl<'a> Control<'a> {
                 }
             }
         }
+        let continuation = self.machine.block.continuation.as_str();
+        if let Some(before) = clean.strip_suffix(continuation).filter(|_| !continuation.is_empty()) {
+            // A remark is a line.
+            clean = format!("{before}{REPLACEMENT}");
+            for character in continuation.chars() {
+                self.find(PostFindingKind::Character { character });
+            }
+        }
         // Not through `template`, which would close up runs of blanks in the text.
         self.push_block(&template.replace("{text}", &clean));
     }
 
-    /// Appends a block, with skip mark and sequence number where they belong.
-    pub(crate) fn push_block(&mut self, text: &str) {
-        let sequence = self.machine.block.sequence;
-        let plain = text.is_empty() || text.starts_with(['%', 'O', '(', ';']);
-        let mut block = String::new();
-        if let Some(level) = self.skip
-            && !plain
-        {
-            block.push_str(&self.machine.block.skip);
-            if level > 1 {
-                block.push_str(&level.to_string());
-            }
+    /// The mark of a block that may be skipped.
+    fn skip_mark(&self) -> String {
+        match self.skip {
+            None => String::new(),
+            Some(level) if level > 1 => format!("{}{level}", self.machine.block.skip),
+            Some(_) => self.machine.block.skip.clone(),
         }
-        if sequence.every_line || self.numbering.on && !plain {
+    }
+
+    /// The sequence number of the next block, which may be none.
+    fn sequence_number(&mut self, plain: bool) -> String {
+        let layout = &self.machine.block;
+        let mut text = String::new();
+        if layout.sequence.every_line || self.numbering.on && !plain {
             if self.numbering.count.is_multiple_of(self.numbering.every) {
                 let number = self.numbering.next;
                 if let Some(word) = self.number_text("N", f64::from(number)) {
-                    block.push_str(&word);
-                    if self.machine.block.spaces {
-                        block.push(' ');
+                    text.push_str(&word);
+                    if layout.spaces {
+                        text.push(' ');
                     }
                 }
                 let after = number.saturating_add(self.numbering.step);
-                self.numbering.next = if after > sequence.max { sequence.start } else { after };
+                self.numbering.next = if after > layout.sequence.max { layout.sequence.start } else { after };
             }
             self.numbering.count = self.numbering.count.wrapping_add(1);
+        }
+        text
+    }
+
+    /// Appends a block, with skip mark and sequence number where they belong.
+    pub(crate) fn push_block(&mut self, text: &str) {
+        let layout = &self.machine.block;
+        let plain = text.is_empty() || text.starts_with(['%', 'O', '(', ';']);
+        let goes_on = !layout.continuation.is_empty() && text.ends_with(&layout.continuation);
+        let mut block = String::new();
+        if std::mem::replace(&mut self.goes_on, goes_on) {
+            block.push_str(CONTINUED);
+        } else {
+            let mark = if plain { String::new() } else { self.skip_mark() };
+            let number = self.sequence_number(plain);
+            match layout.skip_behind_number {
+                true => block.extend([number, mark]),
+                false => block.extend([mark, number]),
+            }
         }
         block.push_str(text);
         if block.len() > self.machine.max_block {

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at once")]
 
+#[path = "heidenhain/cycles.rs"]
+mod cycles;
 #[path = "heidenhain/random.rs"]
 mod random;
 #[path = "heidenhain/reader.rs"]
@@ -296,34 +298,34 @@ fn words_of_the_control() {
     check(
         text,
         &expect![[r#"
-        0 BEGIN PGM 1 MM
-        1 ; A [B]
-        2 TOOL CALL 1 Z S1000
-        3 L M3
-        4 ; CHECK CLAMP
-        5 L X+0 Y+0 R0 FMAX
-        6 L Z+50 R0 FMAX M7
-        7 L X+1 R0 F100
-        8 CYCL DEF 9.0 DWELL TIME
-        9 CYCL DEF 9.1 DWELL 1.5
-        10 STOP M0
-        11 L M1
-        /12 L X+2 Y+0 Z+50 R0 F100
-        13 L X+3 Y+0 Z+50 R0 F100
-        14 L Z+70 R0 FMAX
-        15 L X+3 Y+0 Z+50 R0 F100
-        16 L M50
-        17 L Z+30 R0 FMAX
-        18 L X+4 R0 FU0.1
-        19 L X+5 R0 F100
-        20 L Z-5 R0 FMAX M91
-        21 L X-5 Y-5 R0 FMAX M91
-        22 L M19
-        23 L M9
-        24 L Z-5 R0 FMAX M91
-        25 L M30
-        26 END PGM 1 MM
-    "#]],
+            0 BEGIN PGM 1 MM
+            1 ; A [B]
+            2 TOOL CALL 1 Z S1000
+            3 L M3
+            4 ; CHECK CLAMP
+            5 L X+0 Y+0 R0 FMAX
+            6 L Z+50 R0 FMAX M7
+            7 L X+1 R0 F100
+            8 CYCL DEF 9.0 DWELL TIME
+            9 CYCL DEF 9.1 DWELL 1.5
+            10 STOP M0
+            11 L M1
+            12 /L X+2 Y+0 Z+50 R0 F100
+            13 L X+3 Y+0 Z+50 R0 F100
+            14 L Z+70 R0 FMAX
+            15 L X+3 Y+0 Z+50 R0 F100
+            16 L M50
+            17 L Z+30 R0 FMAX
+            18 L X+4 R0 FU0.1
+            19 L X+5 R0 F100
+            20 L Z-5 R0 FMAX M91
+            21 L X-5 Y-5 R0 FMAX M91
+            22 L M19
+            23 L M9
+            24 L Z-5 R0 FMAX M91
+            25 L M30
+            26 END PGM 1 MM
+        "#]],
     );
 }
 
@@ -333,6 +335,7 @@ fn what_the_control_does_not_take_is_told() {
     let cases = [
         ("SEQNO/10", unsupported("SEQNO")),
         ("PREFUN/61", unsupported("PREFUN")),
+        ("PPRINT A ~", PostFindingKind::Character { character: '~' }),
         ("FEDRAT/2,INVERS", PostFindingKind::NoCode { word: "FEDRAT".into(), name: "feed_inverse".into() }),
     ];
     for (statement, kind) in cases {
@@ -342,173 +345,22 @@ fn what_the_control_does_not_take_is_told() {
     }
 }
 
+/// A line that goes on has the number of the first, and may be skipped with it.
+#[test]
+fn lines_of_one_block_have_one_number() {
+    let text = format!(
+        "{HEAD}OPSKIP/ON\nINSERT CYCL DEF 240 CENTERING ~\nINSERT Q200=2 ~\nINSERT Q343=0\nPPRINT A ~\nOPSKIP/OFF\nINSERT L M7\nFINI\n"
+    );
+    let tape = tape_for(MILL, &text).text();
+    let lines = "3 /CYCL DEF 240 CENTERING ~\n    Q200=2 ~\n    Q343=0\n4 ; A ?\n5 L M7\n";
+    assert!(tape.contains(lines), "{tape}");
+}
+
 #[test]
 fn a_motion_behind_the_end_is_in_the_same_program() {
     let text = format!("{HEAD}RAPID\nGOTO/0,0,50\nEND\nRAPID\nGOTO/1,0,50\nFINI\n");
     let tape = tape_for(MILL, &text).text();
     assert_eq!((tape.matches("BEGIN PGM").count(), tape.matches("M30").count()), (1, 2), "{tape}");
-}
-
-/// Every cycle at three holes, of which the last is higher.
-#[test]
-fn three_holes_of_each_cycle() {
-    let cycles = [
-        "DRILL,DEPTH,18.8026,MMPM,180,CLEAR,3",
-        "FACE,DEPTH,5,MMPM,180,CLEAR,3,DWELL,.5",
-        "DEEP,DEPTH,20,STEP,6,MMPM,180,CLEAR,3,RTRCTO,3",
-        "BRKCHP,DEPTH,20,STEP,6,MMPM,180,CLEAR,3",
-        "REAM,DEPTH,10,MMPM,180,CLEAR,3",
-        "BORE,DEPTH,10,MMPM,180,CLEAR,3,DWELL,1",
-        "BORE9,DEPTH,10,MMPM,180,CLEAR,3,DWELL,1",
-        "TAP,DEPTH,10,MMPR,1.25,CLEAR,3,TIMES,2",
-    ];
-    let holes = "GOTO/10,10,0\nGOTO/35,10,0\nGOTO/35,20,2.5\nCYCLE/OFF\n";
-    let mut text = format!("{HEAD}RAPID\nGOTO/10,10,50\n");
-    for cycle in cycles {
-        text += &format!("CYCLE/{cycle}\n{holes}RAPID\nGOTO/10,10,50\n");
-    }
-    text += &format!("SPINDL/OFF\nSPINDL/300,CCLW\nCYCLE/REVERS,DEPTH,10,MMPR,1.25,CLEAR,3\n{holes}FINI\n");
-    check(
-        &text,
-        &expect![[r#"
-        0 BEGIN PGM 1 MM
-        1 TOOL CALL 1 Z S1000
-        2 L M3
-        3 L X+10 Y+10 R0 FMAX
-        4 L Z+50 R0 FMAX
-        5 CYCL DEF 200 DRILLING Q200=3 Q201=-18.803 Q206=180 Q202=18.803 Q210=0 Q203=+0 Q204=50 Q211=0
-        6 L X+10 Y+10 R0 FMAX M99
-        7 L X+35 R0 FMAX M99
-        8 CYCL DEF 200 DRILLING Q200=3 Q201=-18.803 Q206=180 Q202=18.803 Q210=0 Q203=+2.5 Q204=47.5 Q211=0
-        9 L X+35 Y+20 R0 FMAX M99
-        10 L X+10 Y+10 Z+50 R0 FMAX
-        11 CYCL DEF 200 DRILLING Q200=3 Q201=-5 Q206=180 Q202=5 Q210=0 Q203=+0 Q204=50 Q211=0.5
-        12 L X+10 Y+10 R0 FMAX M99
-        13 L X+35 R0 FMAX M99
-        14 CYCL DEF 200 DRILLING Q200=3 Q201=-5 Q206=180 Q202=5 Q210=0 Q203=+2.5 Q204=47.5 Q211=0.5
-        15 L X+35 Y+20 R0 FMAX M99
-        16 L X+10 Y+10 Z+50 R0 FMAX
-        17 CYCL DEF 200 DRILLING Q200=3 Q201=-20 Q206=180 Q202=6 Q210=0 Q203=+0 Q204=3 Q211=0
-        18 L X+10 Y+10 R0 FMAX M99
-        19 L X+35 R0 FMAX M99
-        20 L Z+5.5 R0 FMAX
-        21 CYCL DEF 200 DRILLING Q200=3 Q201=-20 Q206=180 Q202=6 Q210=0 Q203=+2.5 Q204=3 Q211=0
-        22 L X+35 Y+20 R0 FMAX M99
-        23 L X+10 Y+10 Z+50 R0 FMAX
-        24 CYCL DEF 203 UNIVERSAL DRILLING Q200=3 Q201=-20 Q206=180 Q202=6 Q210=0 Q203=+0 Q204=50 Q212=0 Q213=99999 Q205=6 Q211=0 Q208=99999 Q256=0.25
-        25 L X+10 Y+10 R0 FMAX M99
-        26 L X+35 R0 FMAX M99
-        27 CYCL DEF 203 UNIVERSAL DRILLING Q200=3 Q201=-20 Q206=180 Q202=6 Q210=0 Q203=+2.5 Q204=47.5 Q212=0 Q213=99999 Q205=6 Q211=0 Q208=99999 Q256=0.25
-        28 L X+35 Y+20 R0 FMAX M99
-        29 L X+10 Y+10 Z+50 R0 FMAX
-        30 CYCL DEF 201 REAMING Q200=3 Q201=-10 Q206=180 Q211=0 Q208=0 Q203=+0 Q204=50
-        31 L X+10 Y+10 R0 FMAX M99
-        32 L X+35 R0 FMAX M99
-        33 CYCL DEF 201 REAMING Q200=3 Q201=-10 Q206=180 Q211=0 Q208=0 Q203=+2.5 Q204=47.5
-        34 L X+35 Y+20 R0 FMAX M99
-        35 L X+10 Y+10 Z+50 R0 FMAX
-        36 CYCL DEF 202 BORING Q200=3 Q201=-10 Q206=180 Q211=1 Q208=99999 Q203=+0 Q204=50 Q214=0 Q336=0
-        37 L X+10 Y+10 R0 FMAX M99
-        38 L X+35 R0 FMAX M99
-        39 CYCL DEF 202 BORING Q200=3 Q201=-10 Q206=180 Q211=1 Q208=99999 Q203=+2.5 Q204=47.5 Q214=0 Q336=0
-        40 L X+35 Y+20 R0 FMAX M99
-        41 L X+10 Y+10 Z+50 R0 FMAX
-        42 CYCL DEF 201 REAMING Q200=3 Q201=-10 Q206=180 Q211=1 Q208=0 Q203=+0 Q204=50
-        43 L X+10 Y+10 R0 FMAX M99
-        44 L X+35 R0 FMAX M99
-        45 CYCL DEF 201 REAMING Q200=3 Q201=-10 Q206=180 Q211=1 Q208=0 Q203=+2.5 Q204=47.5
-        46 L X+35 Y+20 R0 FMAX M99
-        47 L X+10 Y+10 Z+50 R0 FMAX
-        48 CYCL DEF 207 RIGID TAPPING Q200=3 Q201=-10 Q239=+1.25 Q203=+0 Q204=50
-        49 L X+10 Y+10 R0 FMAX M99
-        50 L X+10 Y+10 R0 FMAX M99
-        51 L X+35 R0 FMAX M99
-        52 L X+35 Y+10 R0 FMAX M99
-        53 CYCL DEF 207 RIGID TAPPING Q200=3 Q201=-10 Q239=+1.25 Q203=+2.5 Q204=47.5
-        54 L X+35 Y+20 R0 FMAX M99
-        55 L X+35 Y+20 R0 FMAX M99
-        56 L X+10 Y+10 Z+50 R0 FMAX
-        57 L M5
-        58 TOOL CALL S300
-        59 L M4
-        60 CYCL DEF 207 RIGID TAPPING Q200=3 Q201=-10 Q239=-1.25 Q203=+0 Q204=50
-        61 L X+10 Y+10 R0 FMAX M99
-        62 L X+35 R0 FMAX M99
-        63 CYCL DEF 207 RIGID TAPPING Q200=3 Q201=-10 Q239=-1.25 Q203=+2.5 Q204=47.5
-        64 L X+35 Y+20 R0 FMAX M99
-        65 L M5
-        66 L Z-5 R0 FMAX M91
-        67 L M30
-        68 END PGM 1 MM
-    "#]],
-    );
-}
-
-/// A cycle is defined again where a parameter changes, and not for another hole at the same place.
-#[test]
-fn a_hole_that_is_made_again_needs_no_definition() {
-    let text = format!(
-        "{HEAD}RAPID\nGOTO/10,10,50\nCYCLE/DRILL,DEPTH,5,MMPM,180,CLEAR,3\nGOTO/10,10,0\nGOTO/10,10,0\nCYCLE/OFF\nFINI\n"
-    );
-    let tape = tape_for(MILL, &text).text();
-    assert_eq!((tape.matches("CYCL DEF").count(), tape.matches("L X+10 Y+10 R0 FMAX M99").count()), (1, 2));
-}
-
-#[test]
-fn feeds_and_threads_in_inches() {
-    let text = "UNITS/INCHES\nLOADTL/1\nSPINDL/600,CLW\nRAPID\nGOTO/1,3,2\nCYCLE/DRILL,DEPTH,.4,IPM,5.5,CLEAR,.2\nGOTO/1,3,0\n\
-                CYCLE/TAP,DEPTH,.4,TPI,20,CLEAR,.2\nGOTO/1,3,0\nCYCLE/OFF\nFEDRAT/.004,IPR\nGOTO/1,3,1\nFEDRAT/.5\nGOTO/2,3,1\nFINI\n";
-    check(
-        text,
-        &expect![[r#"
-        0 BEGIN PGM 1 INCH
-        1 TOOL CALL 1 Z S600
-        2 L M3
-        3 L X+1 Y+3 R0 FMAX
-        4 L Z+2 R0 FMAX
-        5 CYCL DEF 200 DRILLING Q200=0.2 Q201=-0.4 Q206=55 Q202=0.4 Q210=0 Q203=+0 Q204=2 Q211=0
-        6 L X+1 Y+3 R0 FMAX M99
-        7 CYCL DEF 207 RIGID TAPPING Q200=0.2 Q201=-0.4 Q239=+0.05 Q203=+0 Q204=2
-        8 L X+1 Y+3 R0 FMAX M99
-        9 L Z+1 R0 FU0.004
-        10 L X+2 R0 F5
-        11 L M5
-        12 L Z-5 R0 FMAX M91
-        13 L M30
-        14 END PGM 1 INCH
-    "#]],
-    );
-}
-
-#[test]
-fn a_cycle_that_the_control_lacks_is_made_of_moves() {
-    let text = format!(
-        "{HEAD}RAPID\nGOTO/10,10,50\nCYCLE/SHIFT,DEPTH,10,MMPM,180,CLEAR,3,OFFSET,.2\nGOTO/10,10,0\nCYCLE/OFF\nFINI\n"
-    );
-    let expanded = PostFindingKind::CycleExpanded { cycle: "SHIFT".into() };
-    check_with(
-        MILL,
-        &text,
-        &[expanded],
-        &expect![[r#"
-        0 BEGIN PGM 1 MM
-        1 TOOL CALL 1 Z S1000
-        2 L M3
-        3 L X+10 Y+10 R0 FMAX
-        4 L Z+50 R0 FMAX
-        5 L Z+3 R0 FMAX
-        6 L Z-10 R0 F180
-        7 L M19
-        8 L X+10.2 R0 FMAX
-        9 L Z+50 R0 FMAX
-        10 L X+10 R0 FMAX
-        11 L M3
-        12 L M5
-        13 L Z-5 R0 FMAX M91
-        14 L M30
-        15 END PGM 1 MM
-    "#]],
-    );
 }
 
 const MILL5: &str = "heidenhain-mill5";

@@ -306,6 +306,12 @@ pub struct BlockLayout {
     /// written behind the mark.
     #[serde(default = "one_level")]
     pub skip_levels: u32,
+    /// Whether that stands behind the sequence number.
+    #[serde(default)]
+    pub skip_behind_number: bool,
+    /// What ends a line whose block goes on on the next one, which has no number then; empty where a line is a block.
+    #[serde(default)]
+    pub continuation: String,
     /// Sequence numbers.
     pub sequence: Sequence,
 }
