@@ -261,6 +261,25 @@ fn tools_and_speeds_in_both_orders() {
     );
 }
 
+/// A tool that is loaded while the spindle turns stops it, as on every machine, and is told its speed all the same.
+#[test]
+fn a_spindle_that_turns_before_its_tool() {
+    let text = "UNITS/MM\nSPINDL/1000,CLW\nLOADTL/1\nRAPID\nGOTO/0,0,50\nFINI\n";
+    let told = PostFindingKind::ToolChangeWhile { what: "SPINDL".into() };
+    check_with(MILL, text, &[told], &expect![[r#"
+        0 BEGIN PGM 1 MM
+        1 TOOL CALL S1000
+        2 L M3
+        3 L M5
+        4 TOOL CALL 1 Z S1000
+        5 L X+0 Y+0 R0 FMAX
+        6 L Z+50 R0 FMAX
+        7 L Z-5 R0 FMAX M91
+        8 L M30
+        9 END PGM 1 MM
+    "#]]);
+}
+
 #[test]
 fn compensation_is_told_in_every_straight_block() {
     let text = "UNITS/MM\nFROM/-20,-20,-5\nSPINDL/1000,CLW\nFEDRAT/600\nCUTCOM/LEFT,1\nGOTO/-20,-20,-6\nGOTO/0,-10,-6\nGOTO/0,40,-6\n\
