@@ -2,6 +2,7 @@
 //! the whole band serves the sag; the length is found by a secant on the sag, which grows with the square of it. Where the
 //! path begins to bend the other way both limits are tried, and the vertex before may move back on its vector ([`window`]).
 
+mod arriving;
 mod at_corner;
 mod attempt;
 mod corner;
@@ -21,15 +22,12 @@ use std::ops::{Deref, DerefMut};
 
 use apt_geometry::{Vec3, patience::Patience};
 
-use self::{hand::Hand, neck::Through, overlong::Overlong, trend::Trend};
+use self::{arriving::Arrival, hand::Hand, neck::Through, overlong::Overlong, trend::Trend};
 use super::{Prepared, Vertex};
 use crate::{
     bound::{Readings, Record},
     clearance::{Contact, Shape},
-    directed::{
-        prepare::UNDETERMINED,
-        proof::{self, Extremes, Ledger},
-    },
+    directed::proof::{self, Extremes, Ledger},
     error::MotionFailure,
     role::{Bend, GUARD, Working},
 };
@@ -49,11 +47,6 @@ const GREATEST_GROWTH: f64 = 4.0;
 const NEARLY: f64 = 1.01;
 /// How many times the width of the bands a vector may be long to round a corner of the path of up to a right angle.
 const CORNER_BANDS: f64 = 20.0;
-/// How many times the width of the bands a path goes on before what it does there is not turning on the spot any more.
-const KINK_BANDS: f64 = 0.1;
-/// How many times the square of the angle between path and vector at its start that at its end may be on a bend that goes on as it
-/// begins: on one that grows tighter it is twice the angle at most.
-const MOST_TURNED: f64 = 4.0;
 /// Shares of the way to the middle of the bands that a vector goes which does not keep its place in them.
 const INWARD: [f64; 3] = [0.03, 0.1, 0.3];
 /// How many times as long a vector off the limit of a band must be, and one that is not proven at the limit must seem to be, to take its place.
@@ -111,16 +104,6 @@ pub(super) struct Stepper<'a> {
     longest: f64,
     /// How the path bends so far, for the least number of vectors.
     pub(super) record: Record,
-}
-
-/// How the path came to a place.
-#[derive(Clone, Copy)]
-struct Arrival {
-    at: Vec3,
-    /// The vector that led there.
-    vector: Vec3,
-    /// The direction of the path at its end.
-    tangent: Vec3,
 }
 
 /// A vector that has been tried. It goes through many hands, so what is told of it stays where it was written.
@@ -303,16 +286,6 @@ impl<'a> Stepper<'a> {
         Some(found.vertex)
     }
 
-    /// Remembers the direction of a vector.
-    fn note(&mut self, here: &Vertex, next: &Vertex) {
-        self.hand.follow(self.prepared, [here, next]);
-        self.last = next.tip - here.tip;
-        if !self.is_where_it_arrived(&next.tip) {
-            let (vector, tangent) = (self.last, arrival(here, next));
-            self.arrived = Some(Arrival { at: next.tip, vector, tangent });
-        }
-    }
-
     fn bands(&self) -> f64 {
         self.prepared.part.band() + self.prepared.drive.band()
     }
@@ -320,34 +293,6 @@ impl<'a> Stepper<'a> {
     /// How long a vector may be to round a corner of the path.
     fn rounding(&self) -> f64 {
         CORNER_BANDS * self.bands()
-    }
-
-    /// True if all that the path has done since it arrived is to turn on the spot.
-    fn is_where_it_arrived(&self, tip: &Vec3) -> bool {
-        self.arrived.is_some_and(|arrival| (tip - arrival.at).norm() <= KINK_BANDS * self.bands())
-    }
-
-    /// True if the path, bit by bit, has turned so far on the spot that it goes back from where it came: against the vector that
-    /// led there, not plainly onward from how the path ended, from which a vector along a bend differs, and not on the hand on which
-    /// the path keeps both surfaces.
-    fn kinks_back(&self, here: &Vertex, direction: &Vec3) -> bool {
-        self.is_where_it_arrived(&here.tip)
-            && self.arrived.is_some_and(|Arrival { vector, tangent, .. }| {
-                let plainly = UNDETERMINED * direction.norm() * tangent.norm();
-                direction.dot(&vector) < 0.0 && direction.dot(&tangent) < plainly
-            })
-            && !self.hand.leads_along(here, direction)
-    }
-
-    /// True if the path would go back from where it came: against the last vector, or, near a place where it has turned on
-    /// the spot, against its direction before that.
-    fn leads_back(&self, here: &Vertex, tangent: &Vec3) -> bool {
-        let near = self.rounding();
-        tangent.dot(&self.last) < 0.0
-            || self.kinks_back(here, tangent)
-            || self
-                .turned
-                .is_some_and(|(at, before)| (here.tip - at).norm() <= near && tangent.dot(&before) <= 0.0)
     }
 
     /// The next vertex along the tangent, at most `cap` away.
@@ -567,19 +512,6 @@ fn limit(role: &Working, bend: Bend, clearance: f64) -> f64 {
         (Bend::Straight, Shape::Convex) => clearance.min(role.vertex(Bend::Convex)).max(usual),
         (Bend::Straight, Shape::Concave) => clearance.max(role.vertex(Bend::Concave)).min(usual),
         _ => usual,
-    }
-}
-
-/// The direction in which the path arrives at the end of a vector: its tangent there, which on a bent path is not that of the
-/// vector; but that of an arc where the tangent is likely to be that of the path beyond a place where it turns.
-fn arrival(from: &Vertex, to: &Vertex) -> Vec3 {
-    let vector = to.tip - from.tip;
-    // The square of an angle, but for a half.
-    let turned = |tangent: &Vec3| vector.norm() - tangent.dot(&vector);
-    if turned(&to.tangent) <= MOST_TURNED * turned(&from.tangent) {
-        to.tangent
-    } else {
-        along_arc(from, &vector)
     }
 }
 
