@@ -519,3 +519,62 @@ fn a_tool_that_turns_does_not_go_through_a_neck_to_its_far_wall() {
     assert!((p.tip() - v(1.3, -1.0, 9.0)).norm() < 0.1, "{:?}", p.tip());
     is_proven(&p);
 }
+
+/// A lens normal to its part surface touches its drive surface below, too, where it touches it with its top, and the path turns by 70°. It comes there at the outer limit
+/// of its band, out of which the other leg leads: a vector across the band goes before, which tells nothing of where the path comes from.
+#[test]
+fn a_tool_that_turns_goes_on_out_of_the_limit_of_its_band_in_a_corner() {
+    let head = [
+        1.0,
+        -0.8436888674072904,
+        0.5329245222458513,
+        -0.06465716203201743,
+        1.0550475228721494,
+        0.5284026939164295,
+        0.8031349758204339,
+        -0.2752540711338729,
+        0.9802851941849464,
+        -0.09476121609004269,
+        -0.2663938141228921,
+        -0.9591947913339571,
+        6.216320082821893,
+        0.0,
+        0.0,
+        6.0,
+    ];
+    const ROOT: f64 = 3.921723388575551;
+    let polynomials = [
+        [ROOT, 0.08521630430336413],
+        [ROOT, 0.047492969003795515],
+        [ROOT, -0.0901601308515448],
+        [-ROOT, -0.03788416296033188],
+        [-ROOT, 0.029172634838350947],
+        [ROOT, 0.028742064932283873],
+        [std::f64::consts::FRAC_1_SQRT_2, 0.003432674923117836],
+    ];
+    let part = super::beyond_ends::poly_conic(&head, polynomials);
+    let drive = quadric([
+        0.06993443404759773,
+        -0.07766284881307076,
+        0.005672044516577492,
+        1.7328896481270828,
+        0.040404595932008236,
+        0.02328795214471728,
+        0.06901166879483372,
+        -0.5242344001507473,
+        -0.0996421253015718,
+        -0.2244953349070268,
+    ]);
+    let forward = v(-0.28857903255450285, 0.9562910897260579, -0.047217514551865285);
+    let across = |d: f64| plane(forward.x, forward.y, forward.z, d);
+    let mut p = Program::new();
+    p.cutter(&[1.0, 0.1875, 0.33, 0.22, 6.600892741427102, 5.0, 4.87054589897936]).tolerance(0.001, 0.001);
+    let axis = Some(v(-0.07224207880777103, 0.027427612917605027, 0.9970099338016517));
+    let position = v(-1.7756073340590843, 2.221524357060035, 0.7818331044905764);
+    p.run(&MotionCommand::From { position, axis, name: String::new() });
+    p.run(&MotionCommand::ToolAxis(ToolAxis::Normal { part: true })).part_side(PartSide::Offset);
+    p.go(&[(Relation::To, &drive), (Relation::To, &part), (Relation::On, &across(2.011545252208288))]);
+    p.side(DriveSide::Left).indirv(forward.x, forward.y, forward.z);
+    p.drive(Turn::Forward, &drive, Relation::On, &across(3.6));
+    is_proven(&p);
+}

@@ -96,6 +96,8 @@ pub(super) struct Stepper<'a> {
     in_neck: Option<Through>,
     /// The last vector; zero before the first.
     last: Vec3,
+    /// The last one longer than the bands are wide, after where it ends.
+    came: Option<(Vec3, Vec3)>,
     /// Where the path came from farther off than it may turn on the spot.
     arrived: Option<Arrival>,
     /// What proofs leave for the next ones: part, drive.
@@ -192,6 +194,7 @@ impl<'a> Stepper<'a> {
             beyond_corner: None,
             in_neck: None,
             last: Vec3::zeros(),
+            came: None,
             arrived: None,
             ledgers: Default::default(),
             longest: 0.0,

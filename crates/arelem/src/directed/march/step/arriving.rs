@@ -26,6 +26,9 @@ impl Stepper<'_> {
     pub(super) fn note(&mut self, here: &Vertex, next: &Vertex) {
         self.hand.follow(self.prepared, [here, next]);
         self.last = next.tip - here.tip;
+        if self.last.norm() > self.bands() {
+            self.came = Some((next.tip, self.last));
+        }
         if !self.is_where_it_arrived(&next.tip) {
             let (vector, tangent) = (self.last, arrival(here, next));
             self.arrived = Some(Arrival { at: next.tip, vector, tangent });
@@ -49,11 +52,19 @@ impl Stepper<'_> {
             && !self.hand.leads_along(here, direction)
     }
 
-    /// True if the path would go back from where it came: against the last vector, or, near a place where it has turned on
+    /// The vector that tells where the path comes from. A tool that turns has no vectors that end in corners: one within the bands,
+    /// to where it may go on along the other leg, leads across the path, and the one before it tells that.
+    fn coming(&self, here: &Vertex) -> Vec3 {
+        let is_within = |at: &Vec3| (here.tip - at).norm() <= self.bands();
+        let came = self.came.filter(|(end, _)| self.prepared.attitude.turns() && is_within(end));
+        came.map_or(self.last, |(_, vector)| vector)
+    }
+
+    /// True if the path would go back from where it came: against the vector that tells that, or, near a place where it has turned on
     /// the spot, against its direction before that.
     pub(super) fn leads_back(&self, here: &Vertex, tangent: &Vec3) -> bool {
         let near = self.rounding();
-        tangent.dot(&self.last) < 0.0
+        tangent.dot(&self.coming(here)) < 0.0
             || self.kinks_back(here, tangent)
             || self
                 .turned

@@ -194,19 +194,19 @@ impl Stepper<'_> {
             if self.turns_before_it_sets_out(here, &direction) {
                 continue;
             }
-            let known = (self.last, self.arrived, self.turned);
-            (self.last, self.arrived, self.turned) = (Vec3::zeros(), None, None);
+            let known = (self.last, self.came, self.arrived, self.turned);
+            (self.last, self.came, self.arrived, self.turned) = (Vec3::zeros(), None, None, None);
             let turned = Vertex { tangent: direction, ..*here };
             self.kept_hand = Some(self.hand.or_at(here));
             let found = self.in_any_place(&turned, cap);
             self.kept_hand = None;
             let next = found?;
-            let onward = (self.last, self.arrived);
-            (self.last, self.arrived, self.turned) = known;
+            let onward = (self.last, self.came, self.arrived);
+            (self.last, self.came, self.arrived, self.turned) = known;
             if let Some(next) = next {
                 let straight = self.straight_from(here, seconds, cap)?;
                 self.straight = straight.map(|straight| Box::new([*here, straight]));
-                (self.last, self.arrived) = onward;
+                (self.last, self.came, self.arrived) = onward;
                 (self.turned, self.turned_sharply) = (Some((here.tip, direction)), Some(here.tip));
                 *here = turned;
                 return Ok(Some(next));

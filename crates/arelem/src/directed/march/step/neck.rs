@@ -133,12 +133,12 @@ impl Stepper<'_> {
 
     /// The next vertex behind the narrowest place of a neck, on the hand of the path. Errors: cancelled.
     fn out_of_neck(&mut self, narrowest: &Vertex, cap: f64) -> Result<Option<Vertex>, MotionFailure> {
-        let known = (self.last, self.arrived, self.turned);
-        (self.last, self.arrived, self.turned) = (Vec3::zeros(), None, None);
+        let known = (self.last, self.came, self.arrived, self.turned);
+        (self.last, self.came, self.arrived, self.turned) = (Vec3::zeros(), None, None, None);
         self.kept_hand = Some(self.hand.or_at(narrowest));
         let found = self.in_any_place(narrowest, cap);
         self.kept_hand = None;
-        (self.last, self.arrived, self.turned) = known;
+        (self.last, self.came, self.arrived, self.turned) = known;
         found
     }
 }
