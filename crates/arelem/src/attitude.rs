@@ -91,6 +91,11 @@ impl<'a> Attitude<'a> {
         self.law.as_ref().is_some_and(|law| law.jumps_between(tip, before, beyond))
     }
 
+    /// The cosine between a line of motion and the direction in which the axis leads, or against which it lags; none where it does neither.
+    pub(crate) fn leads_along(&self, tip: &Vec3, line: &Vec3) -> Option<f64> {
+        self.law.as_ref().and_then(|law| law.leads_along(tip, line))
+    }
+
     /// True if the axis changes along the path.
     pub(crate) fn turns(&self) -> bool {
         self.law.is_some()

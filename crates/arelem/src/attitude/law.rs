@@ -106,11 +106,13 @@ enum Mode {
         /// Direction of the line divided by its length.
         line: Vec3,
     },
-    /// In the plane across a unit vector, turned about that vector by an angle with this cosine and sine.
+    /// In the plane across a unit vector, turned about that vector by an angle with this cosine and sine; where the angle leads, in which sense
+    /// of that turn motion goes.
     Across {
         vector: Vec3,
         cosine: f64,
         sine: f64,
+        leads: Option<f64>,
     },
     /// Components along the normal, along the direction of motion, towards the other surface's normal; the sense of
     /// the direction of motion against the product of the two normals.
@@ -228,12 +230,15 @@ impl Law {
                 let turning = vector.cross(&flat);
                 let aside = self.other.as_ref().map_or(0.0, |other| other.normal(tip).dot(&turning));
                 // Where the drive surface lies across the plane alpha leads (+) or lags.
-                let towards = match aside {
-                    aside if aside.abs() > LEAD_SINE => aside,
-                    _ if angle.abs() <= ZERO_ANGLE => 0.0,
-                    _ => leading(&turning, ahead)?,
+                let (towards, leads) = match aside {
+                    aside if aside.abs() > LEAD_SINE => (aside, None),
+                    _ if angle.abs() <= ZERO_ANGLE => (0.0, None),
+                    _ => {
+                        let forward = leading(&turning, ahead)?;
+                        (forward, Some(forward.signum()))
+                    }
                 };
-                Mode::Across { vector, cosine, sine: if towards < 0.0 { -sine } else { sine } }
+                Mode::Across { vector, cosine, sine: if towards < 0.0 { -sine } else { sine }, leads }
             }
             AxisAngle::Lead(lead) => {
                 let rest = 1.0 - cosine * cosine - lead.sin() * lead.sin();
@@ -285,11 +290,27 @@ impl Law {
             .is_ok_and(|(tangent, _)| tangent.dot(before) * tangent.dot(beyond) < 0.0)
     }
 
+    /// The cosine between a line of motion and the direction in which the axis leads, or against which it lags; none where it does neither.
+    pub(crate) fn leads_along(&self, tip: &Vec3, line: &Vec3) -> Option<f64> {
+        let normal = || self.base.normal(tip);
+        let ahead = match self.mode {
+            Mode::Lead { ahead, sense, .. } if ahead.abs() > ZERO_ANGLE => {
+                let other = self.others(tip);
+                frame(&normal(), other.as_ref().map(|(normal, _)| normal)).ok()?.0 * sense
+            }
+            Mode::Across { vector, leads: Some(sense), .. } => {
+                vector.cross(&in_plane(&normal(), &vector).ok()?) * sense
+            }
+            _ => return None,
+        };
+        Some(ahead.dot(line))
+    }
+
     /// The same law with the angle that it tilts by, or leads by, to the other side; none where that hangs on no place.
     pub(crate) fn to_other_side(&self) -> Option<Self> {
         let mode = match self.mode {
-            Mode::Across { vector, cosine, sine } if sine.abs() > ZERO_ANGLE => {
-                Mode::Across { vector, cosine, sine: -sine }
+            Mode::Across { vector, cosine, sine, leads } if sine.abs() > ZERO_ANGLE => {
+                Mode::Across { vector, cosine, sine: -sine, leads: leads.map(|sense| -sense) }
             }
             Mode::Lead { along, ahead, aside, sense } if ahead.abs() > ZERO_ANGLE => {
                 Mode::Lead { along, ahead, aside, sense: -sense }
@@ -386,7 +407,7 @@ impl Law {
                 let (_, aside) = frame(normal, other)?;
                 normal * cosine + aside * sine
             }
-            Mode::Across { vector, cosine, sine } => {
+            Mode::Across { vector, cosine, sine, .. } => {
                 let flat = in_plane(normal, &vector)?;
                 flat * cosine + vector.cross(&flat) * sine
             }
@@ -476,4 +497,32 @@ fn corner(tool: &Tool, tip: &Vec3, axis: &Vec3, normal: &Vec3) -> Vec3 {
     let Touched { circle, arc } = touched(tool, axis, normal);
     let radial = (normal - axis * normal.dot(axis)).try_normalize(SAME_DIRECTION).unwrap_or_else(Vec3::zeros);
     tip + axis * circle.height - radial * circle.radius - normal * arc
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::{ground, y};
+
+    #[test]
+    fn an_axis_leads_along_its_surfaces_in_one_sense() {
+        let directed = |geometry| {
+            let surface = Surface::from_geometry(geometry).expect("a surface");
+            Directed { surface, sign: 1.0, lift: Vec3::zeros() }
+        };
+        let (base, other) = (directed(&ground()), Some(directed(&y(0.0))));
+        let law = Law { base, other, mode: Mode::Normal };
+        let along = |mode| {
+            let law = Law { mode, ..law.clone() };
+            let cosine = |law: &Law| law.leads_along(&Vec3::zeros(), &Vec3::x());
+            (cosine(&law), law.to_other_side().as_ref().and_then(cosine))
+        };
+        let lead = |ahead| Mode::Lead { along: 0.9, ahead, aside: 0.1, sense: -1.0 };
+        let across = |leads| Mode::Across { vector: Vec3::y(), cosine: 0.8, sine: 0.6, leads };
+        assert_eq!(along(lead(0.1)), (Some(1.0), Some(-1.0)));
+        assert_eq!(along(across(Some(1.0))), (Some(1.0), Some(-1.0)));
+        for of_no_direction in [Mode::Normal, lead(0.0), across(None)] {
+            assert_eq!(along(of_no_direction), (None, None));
+        }
+    }
 }

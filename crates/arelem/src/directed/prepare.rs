@@ -96,6 +96,7 @@ pub(super) fn prepare<'a>(
     let attitude = attitude(state, &tool, (&part, &drive), &tip, &wanted)?;
     let standing = tangent;
     tangent = line_of_turning(&attitude, [&part, &drive], &tip, (&standing, &wanted)).unwrap_or(standing);
+    leads_along(&attitude, &tip, (&tangent, &wanted))?;
     let drive_side = judge_side(state, &tool, &followed[1], &tangent, warnings);
     let checks = working_checks(state, checks, patience)?;
     warn_of_surface_twice([&part, &drive].into_iter().chain(&checks), warnings);
@@ -314,6 +315,20 @@ fn line_of_turning(
     let [asked, standing] = [wanted, standing].map(|direction| along.dot(direction));
     let sense = if asked.abs() > UNDETERMINED { asked } else { standing };
     Some(if sense < 0.0 { -along } else { along })
+}
+
+/// An axis with a lead angle leads along the surfaces that guide it in the sense of the direction asked for. Where the turning of the tool leads its line of
+/// motion square to that, or against it, it would lag along its path: no direction is told.
+fn leads_along(
+    attitude: &Attitude<'_>,
+    tip: &Vec3,
+    (tangent, wanted): (&Vec3, &Vec3),
+) -> Result<(), MotionFailure> {
+    if attitude.leads_along(tip, tangent).is_none_or(|cosine| cosine > UNDETERMINED) {
+        return Ok(());
+    }
+    let angle = tangent.dot(wanted).clamp(-1.0, 1.0).asin().abs();
+    Err(MotionFailure::DirectionUndetermined { angle, tangent: *tangent, wanted: *wanted })
 }
 
 /// The line of motion of a tool that turns on its way, where the direction asked for tells its sense: that of a tool which keeps its axis may be

@@ -302,3 +302,48 @@ fn tools_without_a_rim_follow_a_lead_angle_whose_sense_changes() {
         proven(&p).expect("its bands");
     }
 }
+
+/// The tool is to lead along its surfaces in the direction asked for, and the turning of it leads its line of motion 5° beside square to that, and against where it
+/// leads: it would lag. No direction is told by that.
+#[test]
+fn a_direction_is_undetermined_along_whose_line_a_tool_would_lag_that_is_to_lead() {
+    let under = quadric([
+        0.2216731664572739,
+        0.12816411144646148,
+        -0.13104751448141272,
+        -0.4778112625387658,
+        0.0007424099110358122,
+        0.12253920069838753,
+        -0.11847747798715931,
+        0.2230450026647083,
+        0.042694259346444614,
+        -0.4604954946220663,
+    ]);
+    let beside = quadric([
+        0.008710283615910808,
+        0.10507919081536486,
+        0.08734415231259045,
+        2.290414925587066,
+        0.0378454651935523,
+        -0.00842948804169592,
+        0.022810634156882503,
+        0.1626224446298148,
+        0.31851337150705306,
+        -0.29926478782731514,
+    ]);
+    let first = plane(0.8672342947798907, -0.2910083658670396, 0.40400347641204876, 0.2174969836634931);
+    let asked = v(-0.8672342947798907, 0.29100836586703954, -0.40400347641204876);
+    let axis = v(-0.46260021604512136, -0.1708573689574018, 0.8699475843911295);
+    let mode = AxisAngle::Lead(0.009901841825494771);
+    let mut p = Program::new();
+    p.tolerance(2e-5, 3e-5).cutter(&[1.1263232259125482, 0.5631616129562741]);
+    let position = v(0.4317465188731032, 1.19646663796058, 0.9262679058735014);
+    p.run(&MotionCommand::From { position, axis: Some(axis), name: String::new() });
+    p.run(&MotionCommand::ToolAxis(ToolAxis::AtAngle { part: true, angle: -0.11818544282816922, mode }));
+    p.part_side(PartSide::Offset);
+    p.go(&[(Relation::To, &beside), (Relation::To, &under), (Relation::On, &first)]);
+    p.side(DriveSide::Right).indirv(asked.x, asked.y, asked.z);
+    let stop = plane(0.0, 1.0, 0.0, 1.0);
+    let failure = p.attempt(&motion(Turn::Forward, &beside, &[(Relation::On, 1, &stop)]));
+    assert!(matches!(failure, Err(MotionFailure::DirectionUndetermined { .. })), "{failure:?}");
+}

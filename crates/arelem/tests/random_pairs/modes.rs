@@ -18,7 +18,7 @@ use crate::{
     case::{self, Case, Placed, Stance},
     judge::{self, Fault, Runner, Verdict},
     kinds::Kind,
-    search::Reader,
+    search::{LEAST_FORWARD, Reader},
     stand::Stand,
     support::Random,
 };
@@ -225,6 +225,13 @@ fn refused(turning: &Turning, runner: &Runner, failure: &MotionFailure) -> Verdi
     if !case.is_tangent_on_one_side() || !case.is_tangent_there(&reader, &case.forward) {
         // The tangency was laid for an axis that keeps its direction.
         return Verdict::NotJudged(format!("{failure:?}"));
+    }
+    if let (MotionFailure::DirectionUndetermined { .. }, Some(tip)) = (failure, start)
+        && let Some([_, line]) = reader.setting_out(&tip)
+        && stand.leads_along(&tip, &line).is_some_and(|cosine| cosine <= LEAST_FORWARD)
+    {
+        // It would lag where it is to lead, along its own path.
+        return Verdict::Refused(format!("{failure:?}"));
     }
     judge::told(&reader, start, failure)
 }

@@ -32,7 +32,7 @@ const FINER: f64 = 8.0;
 /// The path is followed this many times as far as the check surface was laid.
 const FAR: f64 = 3.0;
 /// Cosine between the direction asked for and the path from which the direction is settled: two degrees from square.
-const LEAST_FORWARD: f64 = 0.0349;
+pub(crate) const LEAST_FORWARD: f64 = 0.0349;
 /// A path that has the opposite direction after so many steps has turned back.
 const TURNING_BACK: usize = 4;
 /// Steps after which a path from a corner shows whether it goes in the direction asked for, and cosine below which it was one.
@@ -331,18 +331,18 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The direction asked for at a place, across the tool axis, and the line of motion in its sense; none where the motion cannot begin, as it
+    /// points across the path.
+    pub(crate) fn setting_out(&self, tip: &Vec3) -> Option<[Vec3; 2]> {
+        let (forward, axis) = (self.case.forward, self.axis(tip)?);
+        let wanted = (forward - axis * axis.dot(&forward)).try_normalize(1e-9)?;
+        let line = self.tangent(tip, &wanted)?;
+        (line.dot(&wanted).abs() > LEAST_FORWARD).then_some([wanted, line])
+    }
+
     /// The same from a place in steps of a length.
     fn follow(&self, mut tip: Vec3, told: Option<ToldEnd>, long: f64) -> Found {
-        // Directions count across the tool axis.
-        let (forward, Some(axis)) = (self.case.forward, self.axis(&tip)) else { return Found::Ends(0.0) };
-        let Some(wanted) = (forward - axis * axis.dot(&forward)).try_normalize(1e-9) else {
-            return Found::Ends(0.0);
-        };
-        let Some(mut sense) = self.tangent(&tip, &wanted) else { return Found::Ends(0.0) };
-        // The motion cannot begin across the path.
-        if sense.dot(&wanted).abs() <= LEAST_FORWARD {
-            return Found::Ends(0.0);
-        }
+        let Some([wanted, mut sense]) = self.setting_out(&tip) else { return Found::Ends(0.0) };
         let stops_at_tangency =
             matches!(self.case.stop.relation, Relation::TangentToDrive | Relation::TangentToPart);
         let band = self.case.inside.max(self.case.outside);

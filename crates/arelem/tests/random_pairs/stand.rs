@@ -177,6 +177,21 @@ impl Stand {
         }
     }
 
+    /// The cosine between a line of motion and the direction in which the axis leads or against which it lags; none where it does neither.
+    pub(crate) fn leads_along(&self, tip: &Vec3, line: &Vec3) -> Option<f64> {
+        let (normal, aside) = (self.base.normal(tip), self.other.normal(tip));
+        match self.mode {
+            ToolAxis::AtAngle { mode: AxisAngle::Lead(lead), .. } if lead != 0.0 => {
+                Some(self.sense * normal.cross(&aside).normalize().dot(line))
+            }
+            ToolAxis::AtAngle { mode: AxisAngle::PerpendicularTo(vector), angle, .. } if angle != 0.0 => {
+                let turning = turning_about(&vector.normalize(), &normal);
+                (aside.dot(&turning).abs() <= LEAST_ASIDE).then(|| self.sense * turning.dot(line))
+            }
+            _ => None,
+        }
+    }
+
     /// Whether a position is so near to the vertex of a cone that the tool may turn about it, at its end or at the height that guides it.
     pub(crate) fn is_about_vertex(&self, at: &ToolPosition, band: f64) -> bool {
         let height = if let ToolAxis::Tangent { height, .. } = self.mode { height } else { 0.0 };
@@ -313,11 +328,15 @@ fn sense(mode: &ToolAxis, (base, other): (&Guide, &Guide), tip: &Vec3, forward: 
     match mode {
         ToolAxis::AtAngle { mode: AxisAngle::Lead(_), .. } => normal.cross(&aside).dot(forward).signum(),
         ToolAxis::AtAngle { mode: AxisAngle::PerpendicularTo(vector), .. } => {
-            let vector = vector.normalize();
-            let turning = vector.cross(&(normal - vector * normal.dot(&vector)).normalize());
+            let turning = turning_about(&vector.normalize(), &normal);
             let towards = aside.dot(&turning);
             if towards.abs() > LEAST_ASIDE { towards.signum() } else { forward.dot(&turning).signum() }
         }
         _ => 1.0,
     }
+}
+
+/// The direction in which a normal goes, in the plane across a unit vector, that turns about it.
+fn turning_about(vector: &Vec3, normal: &Vec3) -> Vec3 {
+    vector.cross(&(normal - vector * normal.dot(vector)).normalize())
 }

@@ -89,7 +89,7 @@ impl Law {
                 let [_, aside] = frame_rates(normal, other?)?;
                 Rates { first: times(cosine) + aside.first * sine, second: aside.second * sine }
             }
-            Mode::Across { vector, cosine, sine } => {
+            Mode::Across { vector, cosine, sine, .. } => {
                 let flat = Matrix3::identity() - vector * vector.transpose();
                 let (_, along) = unit(&(flat * normal))?;
                 alone((times(cosine) + vector.cross_matrix() * sine) * along * flat)
@@ -189,7 +189,7 @@ mod tests {
         [
             Mode::Normal,
             Mode::Tilted { cosine, sine },
-            Mode::Across { vector, cosine, sine },
+            Mode::Across { vector, cosine, sine, leads: None },
             Mode::Lead { along: cosine, ahead, aside, sense: -1.0 },
             Mode::Tangent { height: 0.7, vector: None, sense: 1.0 },
             Mode::Tangent { height: 0.4, vector: Some(vector), sense: -1.0 },
