@@ -9,6 +9,9 @@ use apt_post::{
 };
 use expect_test::{Expect, expect};
 
+#[path = "rotary/holes.rs"]
+mod holes;
+
 fn tape_for(machine: &MachineDefinition, text: &str) -> Tape {
     let (records, errors) = read_text(text);
     assert_eq!(errors, vec![]);

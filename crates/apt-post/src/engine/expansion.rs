@@ -68,7 +68,7 @@ impl Engine<'_> {
         let bottom = self.height(&top) - cycle.depth;
         let gap = self.tape_length(PECK_GAP_MM);
         let step = cycle.step.unwrap_or(cycle.depth + cycle.clearance);
-        let passes = (((plane - bottom) / step).ceil() as u32).clamp(1, MOST_PASSES);
+        let passes = self.passes_of(plane - bottom, step);
         for pass in 1..=passes {
             if self.patience.ends_after(1) {
                 return;
@@ -83,6 +83,14 @@ impl Engine<'_> {
                 }
             }
         }
+    }
+
+    /// How many steps lead so far down; what is left of the last one when it is less than the last decimals is none.
+    fn passes_of(&self, way: f64, step: f64) -> u32 {
+        let passes = (way / step).ceil();
+        let last = self.control.rounded("Z", way - step * (passes - 1.0));
+        let passes = if last > 0.0 { passes } else { passes - 1.0 };
+        (passes as u32).clamp(1, MOST_PASSES)
     }
 
     /// Stops the spindle where its edge is known to stand, takes the edge off the wall and the tool out of the hole, and

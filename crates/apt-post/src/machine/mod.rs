@@ -86,7 +86,9 @@ pub enum MachineError {
         axes: usize,
     },
     /// A chain names an axis that is not there, or that is not called A, B or C.
-    #[error("kinematics names the rotary axis {axis}, which is not defined under rotary, where A, B and C may be")]
+    #[error(
+        "kinematics names the rotary axis {axis}, which is not defined under rotary, where A, B and C may be"
+    )]
     UnknownRotaryAxis {
         /// The name.
         axis: String,
