@@ -11,6 +11,8 @@ use expect_test::{Expect, expect};
 
 #[path = "rotary/holes.rs"]
 mod holes;
+#[path = "rotary/nutating.rs"]
+mod nutating;
 
 fn tape_for(machine: &MachineDefinition, text: &str) -> Tape {
     let (records, errors) = read_text(text);

@@ -4,7 +4,7 @@ use apt_geometry::Vec3;
 
 use super::{
     Angles, Kinematics, angle_between,
-    solve::{FOLD, ROUNDING, TURN, nearest_turn, turn_between},
+    solve::{EQUALLY_FAR, FOLD, ROUNDING, TURN, nearest_turn, turn_between},
 };
 
 /// Whole turns to either side among which a beginning may be looked for. A second rotary axis leads to no tool axis that it would
@@ -55,6 +55,9 @@ impl Kinematics {
     /// The side is kept, whatever the limits: between the sides the machine changes only at a fold or on the pole, where a solution
     /// is taken that is nearest within the limits. Both angles are followed continuously, however far the first one has to turn.
     pub(super) fn followed(&self, from: &Vec3, angles: Angles, to: &Vec3) -> Result<Angles, Blocked> {
+        if let Some(led) = self.led_to_pole(from, angles, to) {
+            return Ok(led);
+        }
         let side = self.side(angles[1]);
         if self.pole(to).is_some() || self.meets_pole(from, to) || (side == 0.0 && !self.second_is_kept()) {
             return self.nearest(to, angles).ok_or_else(|| self.blocked(to, angles));
@@ -69,6 +72,23 @@ impl Kinematics {
         let azimuth = turn_between(&self.axes[0].vector, from, to).unwrap_or(0.0);
         let first = nearest_turn(branch[0], angles[0] + azimuth);
         if self.reaches([first, second], to) { Ok([first, second]) } else { Err(Blocked::Unreachable) }
+    }
+
+    /// The angles to which those at `from` lead where the tool axis comes to the pole. Its first angle is free there, and yet it comes to it with a
+    /// certain one: that of the way of the tool as the second axis leaves the pole for the same side. Two axes square to each other keep the first one
+    /// all the way.
+    fn led_to_pole(&self, from: &Vec3, angles: Angles, to: &Vec3) -> Option<Angles> {
+        let side = self.side(angles[1]);
+        if self.pole(to).is_none() || self.pole(from).is_some() || side == 0.0 || self.second_is_kept() {
+            return None;
+        }
+        let first = &self.axes[0].vector;
+        let leaves = first.cross(&self.axes[1].vector) * side;
+        let turned = nearest_turn(turn_between(first, &leaves, from)?, angles[0]);
+        let turned = if (turned - angles[0]).abs() <= EQUALLY_FAR { angles[0] } else { turned };
+        let second = nearest_turn(self.branches(to, angles).next()?[1], angles[1]);
+        let led = [turned, second];
+        self.reaches(led, to).then_some(led)
     }
 
     /// The angles, if no limit excludes them.

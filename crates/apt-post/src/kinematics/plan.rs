@@ -119,8 +119,11 @@ impl Stretch<'_> {
             Ok(angles) => angles,
             Err(blocked) => return Walk { angles, end: Some(blocked) },
         };
+        let leaning = self.axes.get(self.first_leaning).copied().unwrap_or_else(Vec3::z);
         for axis in &self.axes[..self.first_leaning] {
-            match kinematics.nearest(axis, beginning) {
+            // As the way that leaves the pole wants it.
+            let led = kinematics.follow(&leaning, beginning, axis).ok();
+            match led.or_else(|| kinematics.nearest(axis, beginning)) {
                 Some(on_pole) => angles.push(on_pole),
                 None => return Walk { angles, end: Some(kinematics.blocked(axis, beginning)) },
             }
