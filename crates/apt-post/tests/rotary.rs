@@ -9,10 +9,18 @@ use apt_post::{
 };
 use expect_test::{Expect, expect};
 
+#[path = "rotary/follow.rs"]
+mod follow;
 #[path = "rotary/holes.rs"]
 mod holes;
+#[path = "rotary/mill.rs"]
+mod mill;
 #[path = "rotary/nutating.rs"]
 mod nutating;
+#[path = "rotary/random.rs"]
+mod random;
+#[path = "rotary/reader.rs"]
+mod reader;
 
 fn tape_for(machine: &MachineDefinition, text: &str) -> Tape {
     let (records, errors) = read_text(text);
