@@ -9,6 +9,8 @@ use apt_post::{
 };
 use expect_test::{Expect, expect};
 
+#[path = "rotary/between.rs"]
+mod between;
 #[path = "rotary/follow.rs"]
 mod follow;
 #[path = "rotary/holes.rs"]

@@ -13,7 +13,7 @@ use crate::{
     finding::PostFindingKind,
     kinematics::{
         Angles,
-        divide::{Stand, divide},
+        divide::{Stand, beyond, divide},
     },
     machine::{Coordinates, VECTOR_REGISTERS},
     words::FeedMode,
@@ -102,8 +102,8 @@ impl Engine<'_> {
         let turning = self.turning.as_ref()?;
         let tolerances = turning.tolerances();
         let Ok(stands) = divide(&turning.kinematics, from, to, &tolerances, self.patience) else {
-            let most = tolerances.most;
-            self.find(PostFindingKind::TooManyParts { most });
+            let undivided = turning.undivided(from, to);
+            self.find(undivided);
             return None;
         };
         let parts = stands.len();
@@ -443,6 +443,17 @@ impl Turning<'_> {
             (turned / SHORTER_WAY).ceil() as u32
         });
         pieces.max().unwrap_or(1).max(1)
+    }
+
+    /// Why a move is not divided.
+    fn undivided(&self, from: &Stand, to: &Stand) -> PostFindingKind {
+        let most = self.rules.most_parts;
+        let Some((which, angle)) = beyond(&self.kinematics, from, to) else {
+            return PostFindingKind::TooManyParts { most };
+        };
+        let [least, greatest] = self.kinematics.axes[which].limits;
+        let axis = self.names[which].unwrap_or_default().into();
+        PostFindingKind::RotaryLimit { axis, angle, least, greatest, positions: 1 }
     }
 
     /// How far and by which axis the machine turns most on the way to other angles.

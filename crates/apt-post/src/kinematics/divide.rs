@@ -12,7 +12,7 @@ use apt_geometry::{Vec3, patience::Patience};
 
 use super::{
     Angles, Carried, Kinematics, Rotary, angle_between,
-    solve::{EQUALLY_FAR, ROUNDING, farther},
+    solve::{EQUALLY_FAR, REACHED, ROUNDING, farther},
 };
 
 /// Parts of a part between which it is measured at first: the quarters.
@@ -28,6 +28,8 @@ const AIM: f64 = 1.0 - LENGTH_FOUND;
 const MOST_TRIALS: u32 = 50;
 /// How many times the length of the part before it the rest of a move may be that is tried as a whole first.
 const REST_TRIED: f64 = 2.0;
+/// At how many times a move that cannot be divided is looked at for the angles that it would need: within three degrees of a great circle.
+const LOOKED_AT: u32 = 64;
 
 /// What a divided move has to keep.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,6 +85,31 @@ pub(crate) fn divide(
         Divider { kinematics, leg, tolerances, most_off, patience }.divide(&mut stands)?;
     }
     Ok(stands)
+}
+
+/// Which axis would have to turn beyond its end on a move both ends of which it reaches, and the farthest angle at evenly spread times.
+pub(crate) fn beyond(kinematics: &Kinematics, from: &Stand, to: &Stand) -> Option<(usize, f64)> {
+    let mut farthest = None;
+    let mut most = REACHED.to_degrees();
+    for leg in legs(kinematics, from, to).ok()? {
+        let mut last = leg.from;
+        for place in 1..=LOOKED_AT {
+            let time = f64::from(place) / f64::from(LOOKED_AT);
+            let axis = leg.axis(time);
+            let angles = match leg.turns {
+                Turns::Angles => between(leg.from.angles, leg.to.angles, time),
+                Turns::Axis { .. } => kinematics.followed(&last.axis, last.angles, &axis).ok()?,
+            };
+            for (which, angle) in angles.into_iter().enumerate() {
+                let off = (angle - kinematics.axes[which].held_within(angle)).abs();
+                if off > most {
+                    (most, farthest) = (off, Some((which, angle)));
+                }
+            }
+            last = Stand { tip: leg.tip(time), axis, angles };
+        }
+    }
+    farthest
 }
 
 /// The parts of a move before, on and behind the pole, where the machine has to turn there; else the move itself.
