@@ -89,16 +89,17 @@ pub(crate) fn divide(
 
 /// Which axis would have to turn beyond its end on a move both ends of which it reaches, and the farthest angle at evenly spread times.
 pub(crate) fn beyond(kinematics: &Kinematics, from: &Stand, to: &Stand) -> Option<(usize, f64)> {
+    let free = kinematics.without_limit(0).without_limit(1);
     let mut farthest = None;
     let mut most = REACHED.to_degrees();
-    for leg in legs(kinematics, from, to).ok()? {
+    for leg in legs(&free, from, to).ok()? {
         let mut last = leg.from;
         for place in 1..=LOOKED_AT {
             let time = f64::from(place) / f64::from(LOOKED_AT);
             let axis = leg.axis(time);
             let angles = match leg.turns {
                 Turns::Angles => between(leg.from.angles, leg.to.angles, time),
-                Turns::Axis { .. } => kinematics.followed(&last.axis, last.angles, &axis).ok()?,
+                Turns::Axis { .. } => free.followed(&last.axis, last.angles, &axis).ok()?,
             };
             for (which, angle) in angles.into_iter().enumerate() {
                 let off = (angle - kinematics.axes[which].held_within(angle)).abs();
