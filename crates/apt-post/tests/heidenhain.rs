@@ -266,7 +266,11 @@ fn tools_and_speeds_in_both_orders() {
 fn a_spindle_that_turns_before_its_tool() {
     let text = "UNITS/MM\nSPINDL/1000,CLW\nLOADTL/1\nRAPID\nGOTO/0,0,50\nFINI\n";
     let told = PostFindingKind::ToolChangeWhile { what: "SPINDL".into() };
-    check_with(MILL, text, &[told], &expect![[r#"
+    check_with(
+        MILL,
+        text,
+        &[told],
+        &expect![[r#"
         0 BEGIN PGM 1 MM
         1 TOOL CALL S1000
         2 L M3
@@ -277,7 +281,8 @@ fn a_spindle_that_turns_before_its_tool() {
         7 L Z-5 R0 FMAX M91
         8 L M30
         9 END PGM 1 MM
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
