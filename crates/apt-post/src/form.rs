@@ -12,7 +12,7 @@ pub enum Treatment {
     OnTape,
     /// It speaks to listings, plotters, the tape punch or the processor; a machine tool has nothing to do for it.
     Silent,
-    /// It needs a device that a three-axis mill does not have; it stays on the CL file.
+    /// It needs a device that none of the machines that are described has; it stays on the CL file.
     NotSupported,
 }
 
@@ -67,7 +67,7 @@ const SILENT: [&str; 37] = [
     "VTLAXS",
     "WCORN",
 ];
-/// Words for which a three-axis mill has nothing.
+/// Words for which no machine that is described has anything.
 const NOT_SUPPORTED: [&str; 48] = [
     "AIR", "ALIGN", "ASLOPE", "BREAK", "CAM", "CHECK", "CHUCK", "CLAMP", "CORNFD", "COUPLE", "DRESS",
     "FACEML", "HEAD", "IFRO", "INTCOD", "LOCKX", "MAGTAP", "MAXVEL", "MDEND", "MDWRIT", "MODE", "MOVETO",
