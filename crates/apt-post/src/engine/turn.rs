@@ -12,7 +12,7 @@ use crate::{
     control::{Values, Word},
     finding::PostFindingKind,
     kinematics::{
-        Angles,
+        Angles, angle_between,
         divide::{Stand, beyond, divide},
     },
     machine::{Coordinates, VECTOR_REGISTERS},
@@ -121,7 +121,7 @@ impl Engine<'_> {
     /// Tells of a rotary axis that turns far where the tool hardly does.
     fn tell_swing(&mut self, from: &Stand, to: &Stand) {
         let Some(turning) = &self.turning else { return };
-        let turned = from.axis.cross(&to.axis).norm().atan2(from.axis.dot(&to.axis)).to_degrees();
+        let turned = angle_between(&from.axis, &to.axis).to_degrees();
         let swings = (0..2).find_map(|index| {
             let degrees = (to.angles[index] - from.angles[index]).abs();
             let far = degrees > turning.rules.warn_degrees && degrees > SWINGS * turned;

@@ -171,6 +171,6 @@ impl std::ops::Mul for Mat3 {
 }
 
 /// Angle between two directions, radians; as exact for small angles as for others.
-fn angle_between(a: &Vec3, b: &Vec3) -> f64 {
+pub(crate) fn angle_between(a: &Vec3, b: &Vec3) -> f64 {
     a.cross(b).norm().atan2(a.dot(b))
 }
